@@ -14,6 +14,8 @@
 // BRDF_ and SHADOW_ values.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
 layout(constant_id = 3) const uint DIRECT_SHADOW = 0;
+// BRDF_LAMBERT or BRDF_GGX: how virtual point lights are scattered.
+layout(constant_id = 118) const uint VPL_BRDF = 0;
 
 struct BlendParams {
     // Square of --vpl-clamp, in square metres.
@@ -62,6 +64,8 @@ void main() {
     }
     vec3 position_ws = inside_box(params.object, in_position_ws);
     Lit lit = lit_at(material, base_color.rgb, position_ws, params.object.first, params.object.count);
+    vec3 eye_ws = to_eye(frame, position_ws);
+    // Irradiance under Lambert's, which all lights share; else radiance.
     vec3 received = vec3(0.0);
     uint first = 0u;
     uint end = frame.vpl_count;
@@ -78,10 +82,18 @@ void main() {
             continue;
         }
 #endif
+        if (VPL_BRDF != BRDF_LAMBERT) {
+            vec3 to_vpl = vpls[vpl].position_ws.xyz - position_ws;
+            to_vpl *= inversesqrt(max(dot(to_vpl, to_vpl), 1e-12));
+            of_light *= brdf(VPL_BRDF, lit.surface, lit.normal_ws, to_vpl, eye_ws);
+        }
         received += of_light;
     }
     expect_done(vpl == end);
-    vec3 radiance = lit.radiance + albedo_of(lit.surface) * received * (params.weight / PI);
+    vec3 of_vpls = VPL_BRDF != BRDF_LAMBERT
+        ? received * params.weight
+        : albedo_of(lit.surface) * received * (params.weight / PI);
+    vec3 radiance = lit.radiance + of_vpls;
     // Premultiplied: coverage dims what the surface sends as much as what lies behind it.
     out_color = vec4(as_sample(nan_if_cut(radiance)) * base_color.a, base_color.a);
 }

@@ -54,18 +54,20 @@ impl Variant {
         passes.fold([0, 0], |[read, written], pass| [read + pass.read_bytes, written + pass.written_bytes])
     }
 
-    /// Bytes that the stage leaves for what comes behind it, whatever it wrote on the way: of a copy, what is copied.
+    /// Bytes that the stage leaves, whatever it wrote on the way for passes of its own: of a copy, what is copied.
     pub fn result_bytes(&self) -> u64 {
         let (plan, last) = (&self.renderer.plan, *self.passes.last().expect("at least one pass"));
         let touches = |pass: usize, resource: usize| {
             plan.passes[pass].touches.iter().filter(move |touch| touch.resource == resource)
         };
         let is_left = |resource: &usize| {
-            let is_written =
-                self.passes.iter().any(|pass| touches(*pass, *resource).any(|touch| touch.access.writes()));
+            let touched = |writes| {
+                self.passes.iter().any(|pass| touches(*pass, *resource).any(|touch| touch.access.writes() == writes))
+            };
             let mut behind = last + 1..plan.passes.len();
             let is_used = behind.any(|pass| touches(pass, *resource).next().is_some());
-            is_written && (is_used || plan.resources[*resource].read_back)
+            // What nothing reads is left too: colour in sub-buffers that are shaded without it.
+            touched(true) && (is_used || !touched(false) || plan.resources[*resource].read_back)
         };
         (0..plan.resources.len()).filter(is_left).map(|resource| plan.resources[resource].bytes()).sum()
     }

@@ -53,6 +53,40 @@ pub fn emissive_name(has_emissive: bool) -> &'static str {
     if has_emissive { "on" } else { "off" }
 }
 
+/// What a pass reads of each surface, beside what a composite reads last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceParts {
+    /// Normal and position: what irradiance needs.
+    Geometry,
+    /// Colour too, and what few materials say where any of the scene's does.
+    Material { has_extras: bool },
+}
+
+impl SurfaceParts {
+    /// Images beside those of the geometry.
+    fn materials(self) -> &'static [&'static str] {
+        match self {
+            Self::Geometry => &[],
+            Self::Material { has_extras: false } => &["color"],
+            Self::Material { has_extras: true } => &["color", "emissive"],
+        }
+    }
+
+    pub fn has_color(self) -> bool {
+        self != Self::Geometry
+    }
+
+    /// The value of the shaders' axis COLOR.
+    pub fn color_name(self) -> &'static str {
+        if self.has_color() { "on" } else { "off" }
+    }
+
+    /// SURFACE_EXTRAS, where a shader knows of it that reads these parts.
+    pub fn constant(self) -> Option<(&'static str, u32)> {
+        self.has_color().then_some(("SURFACE_EXTRAS", u32::from(self == Self::Material { has_extras: true })))
+    }
+}
+
 const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const WORDS: vk::Format = vk::Format::R32G32_UINT;
 
@@ -99,6 +133,17 @@ pub fn surface_as(technique: &str, position: PositionStorage, access: Access) ->
     ["normal", place].map(|what| (full(technique, what), access)).to_vec()
 }
 
+/// Resources that a pass touches that samples `parts` by `access`.
+pub fn parts_as(
+    technique: &str,
+    position: PositionStorage,
+    parts: SurfaceParts,
+    access: Access,
+) -> Vec<(String, Access)> {
+    let materials = parts.materials().iter().map(|what| (full(technique, what), access));
+    surface_as(technique, position, access).into_iter().chain(materials).collect()
+}
+
 /// Resources that a compute pass touches to read all of it.
 pub fn shading(technique: &str, position: PositionStorage, has_emissive: bool) -> Vec<(String, Access)> {
     let materials = ["color"].into_iter().chain(has_emissive.then_some("emissive"));
@@ -133,6 +178,8 @@ pub struct GBuffer {
     nearest: Sampler,
     /// All of it is readable by compute shaders as soon as it is drawn, and stays so: later runs read it too.
     is_kept: bool,
+    /// What a pass before the composite reads, one in each run, and how.
+    early: (SurfaceParts, Access),
 }
 
 impl GBuffer {
@@ -154,7 +201,13 @@ impl GBuffer {
             depth: image("depth"),
             nearest: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
             is_kept: false,
+            early: (SurfaceParts::Geometry, Access::ComputeSample),
         })
+    }
+
+    /// The same, of which one pass before the composite reads `parts` by `access`, in each run.
+    pub fn read_early(self, parts: SurfaceParts, access: Access) -> Self {
+        Self { early: (parts, access), ..self }
     }
 
     /// The same, kept for more runs than the one that draws it, where `is_kept`.
@@ -195,6 +248,11 @@ impl GBuffer {
         8 + self.position_storage.bytes()
     }
 
+    /// Bytes a pixel of `parts`.
+    pub fn parts_bytes(&self, parts: SurfaceParts) -> u64 {
+        self.surface_bytes() + 8 * parts.materials().len() as u64
+    }
+
     /// Bytes a pixel of all that a composite reads.
     pub fn shading_bytes(&self) -> u64 {
         self.surface_bytes() + 8 + if self.emissive.is_some() { 8 } else { 0 }
@@ -212,6 +270,17 @@ impl GBuffer {
         vec![("gbuffer_position", self.sampled(position)), ("gbuffer_normal", self.sampled(&self.normal))]
     }
 
+    /// The same with what a shader binds that reads `parts`: without extras nothing reads the emission, and the colour
+    /// stands for it.
+    pub fn bound_parts(&self, parts: SurfaceParts) -> Vec<(&'static str, Bound<'_>)> {
+        let mut bound = self.bound_surface();
+        if let SurfaceParts::Material { has_extras } = parts {
+            let emissive = self.emissive.as_ref().filter(|_| has_extras).unwrap_or(&self.color);
+            bound.extend([("gbuffer_color", self.sampled(&self.color)), ("gbuffer_emissive", self.sampled(emissive))]);
+        }
+        bound
+    }
+
     /// What composite.glsl binds.
     pub fn bound_shading(&self) -> Vec<(&'static str, Bound<'_>)> {
         let mut bound = self.bound_surface();
@@ -220,6 +289,18 @@ impl GBuffer {
             bound.push(("gbuffer_emissive", self.sampled(emissive)));
         }
         bound
+    }
+
+    /// The images of materials that are there, by name.
+    fn materials(&self) -> impl Iterator<Item = (&'static str, &Image)> {
+        [("color", Some(&self.color)), ("emissive", self.emissive.as_ref())]
+            .into_iter()
+            .filter_map(|(what, image)| Some((what, image?)))
+    }
+
+    /// How the images of materials were touched before anything in this run reads them.
+    fn materials_drawn(&self) -> Access {
+        if self.is_kept { Access::ComputeSample } else { Access::ColorWrite }
     }
 
     fn sampled<'a>(&'a self, image: &'a Image) -> Bound<'a> {
@@ -252,14 +333,28 @@ impl Edge<'_, GBuffer> {
         vec![gbuffer.normal.from(self.from).to(access), position.to(access)]
     }
 
-    /// All that a composite reads becomes readable by compute shaders. Colour and emission are read by no pass before
-    /// it, whatever read the surface.
+    /// `parts` become readable as the pass reads them that `GBuffer::read_early` names.
+    pub fn parts_to(self, parts: SurfaceParts, access: Access) -> Vec<Barrier> {
+        let gbuffer = self.resource;
+        assert!(!parts.has_color() || gbuffer.early == (parts, access), "a pass that reads materials is named");
+        let read = gbuffer.materials().filter(|(what, _)| parts.materials().contains(what));
+        let mut barriers = self.surface_to(access);
+        barriers.extend(read.map(|(_, image)| image.from(gbuffer.materials_drawn()).to(access)));
+        barriers
+    }
+
+    /// All that a composite reads becomes readable by compute shaders. One pass before it may have read colour and emission,
+    /// whatever read the surface.
     pub fn shading_to_sampled(self) -> Vec<Barrier> {
         let gbuffer = self.resource;
-        let materials = [Some(&gbuffer.color), gbuffer.emissive.as_ref()].into_iter().flatten();
+        let (parts, access) = gbuffer.early;
+        let last = |what| match parts.materials().contains(&what) {
+            true if gbuffer.is_kept => access | Access::ComputeSample,
+            true => access.into(),
+            false => gbuffer.materials_drawn().into(),
+        };
         let mut barriers = self.surface_to_sampled();
-        let last = if gbuffer.is_kept { Access::ComputeSample } else { Access::ColorWrite };
-        barriers.extend(materials.map(|image| image.from(last).to(Access::ComputeSample)));
+        barriers.extend(gbuffer.materials().map(|(what, image)| image.from(last(what)).to(Access::ComputeSample)));
         barriers
     }
 }

@@ -10,6 +10,7 @@ mod shadow_maps;
 mod tables;
 mod tree;
 mod volume;
+mod vpls;
 pub mod written;
 
 pub use forward::{FORWARD, LightBuffer};
@@ -23,10 +24,11 @@ pub use shadow_maps::{
 pub use tables::{
     ANISOTROPY, BRDF, Brdf, COMMON, CULL, CULL_BY, CullBy, CullChoice, DEPTH_PREPASS, DIRECT_SHADOW, DirectShadow,
     EMISSIVE, GEOMETRY, GeometryChoice, Gutters, INSTRUMENT, LIGHT_LISTS, ListChoice, MULTISAMPLE, NORMAL_THRESHOLD,
-    POSITION, POSITION_THRESHOLD, PositionStorage, Rig, SHADING, SampleFormat, TEXELS, VPL_CLAMP, WORKGROUP,
+    POSITION, POSITION_THRESHOLD, PositionStorage, Rig, SHADING, SampleFormat, TEXELS, WORKGROUP,
 };
 pub use tree::{NodeOrder, StackPlace, TREE};
 pub use volume::{VOLUME, VOLUME_PLACE, raw_volume_size, volume_name};
+pub use vpls::{VPL_BRDF, VPL_CLAMP};
 
 use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};

@@ -243,16 +243,6 @@ pub const WORKGROUP: Setting = Setting {
     ..Setting::changing(Changes::Nothing)
 };
 
-/// How near virtual point lights count.
-pub const VPL_CLAMP: Setting = Setting {
-    key: "vpl-clamp",
-    kind: Kind::Length,
-    default: "2%",
-    unit: "m",
-    help: "Least distance at which a virtual point light is evaluated; surfaces nearer than this get no more light",
-    ..Setting::changing(Changes::Picture)
-};
-
 /// Whether emissive triangles light others.
 pub const EMISSIVE: Setting = Setting {
     key: "emissive",

@@ -28,6 +28,18 @@ fn every_method_copies_as_many_bytes() {
     }
 }
 
+/// Colour beside position and normal is copied too, whether anything reads it or not.
+#[test]
+fn colour_in_sub_buffers_is_copied() {
+    let program = Program::new();
+    let methods = ["--sweep", "split=one-pass,two-pass,fragment", "--sub-buffer-color", "on"];
+    for more in [&[][..], &["--vpl-brdf", "ggx"]] {
+        let rows = lines(&program.run(&bench("split", &[&methods, more, &["--json", "--quiet"]].concat())).fine().out);
+        assert_eq!(rows.len(), 3);
+        rows.iter().for_each(|row| assert_eq!(row["copied_bytes"], 64 * 48 * 24, "{row:#}"));
+    }
+}
+
 /// Rows, each with the report of its command.
 fn with_reports(program: &Program, axes: &[&str]) -> Vec<(Value, Value)> {
     let given = ["--pattern", "3x2", "--block", "20", "--vpl-clamp", "3%", "--json", "--quiet"];

@@ -6,6 +6,7 @@
 #version 460
 #include "passes/composite.glsl"
 #include "passes/filter/walk.glsl"
+#include "techniques/interleaved_deferred/demodulation.glsl"
 
 struct CompositeParams {
     // Read with FILTER=columns.
@@ -16,7 +17,8 @@ struct CompositeParams {
     // Always 0, which compilers cannot know: one that sees halves packed and unpacked together rounds otherwise (Mesa
     // 25).
     uint opaque_zero;
-    uint _unused;
+    // 1: --vpl-brdf ggx.
+    uint is_glossy;
 };
 
 layout(push_constant) uniform Push { CompositeParams params; };
@@ -62,7 +64,8 @@ void main() {
         if (point_is_shaded[i]) {
             Surface surface = point_surface[i];
             vec3 received = unpack_halves(received_at(i, pixel));
-            precise vec3 radiance = emitted_at(pixel) + albedo_of(surface) * received / PI;
+            vec3 color_of_received = params.is_glossy != 0u ? modulus_of(surface) : albedo_of(surface);
+            precise vec3 radiance = emitted_at(pixel) + color_of_received * received / PI;
             radiance += ambient_of(i);
             if (direct_full) {
                 radiance += point_radiance[i];

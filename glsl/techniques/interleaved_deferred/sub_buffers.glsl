@@ -1,7 +1,8 @@
 // Texels of sub-buffers, and of the block layout between two passes, as copies and shading read and write them.
 //
 // The including shader has the axis STORAGE, and says before the include what it reads and writes: READS_SURFACE and
-// WRITES_SURFACE (position and normal; axis POSITION), READS_IRRADIANCE and WRITES_IRRADIANCE.
+// WRITES_SURFACE (position and normal; axis POSITION; with COLOR=on, and where VPL_BRDF=ggx reads it, colour too),
+// READS_IRRADIANCE and WRITES_IRRADIANCE.
 //   buffer  storage buffers; sub-buffers one after the other
 //   image   written as storage images, read as sampled ones; sub-buffers tiled side by side (Segovia 2006, figure 3)
 //   layers  the same, an array layer for each sub-buffer
@@ -49,11 +50,18 @@ const uint RUN = 1u;
 #define STORES_RUNS
 #endif
 
+#if defined(COLOR_ON) || defined(VPL_BRDF_GGX)
+#define HAS_COLOR
+#endif
+
 #if defined(READS_SURFACE) || defined(WRITES_SURFACE)
-// What irradiance needs of a pixel, packed as in the G-buffer.
+// What shading needs of a pixel, packed as in the G-buffer; `color`: as color_words of material_of_frame.glsl.
 struct SurfaceTexel {
     POSITION_WORDS position;
     uvec2 normal;
+#ifdef HAS_COLOR
+    uvec2 color;
+#endif
 };
 
 #if defined(POSITION_FLOAT)
@@ -85,6 +93,14 @@ POSITION_WORDS load_position(PLACE place) {
 uvec2 load_normal(PLACE place) {
     return source_normal.texel[place];
 }
+
+#ifdef HAS_COLOR
+layout(std430, set = 0, binding = 18) readonly buffer SourceColor { uvec2 texel[]; } source_color;
+
+uvec2 load_color(PLACE place) {
+    return source_color.texel[place];
+}
+#endif
 #else
 layout(set = 0, binding = 10) uniform SAMPLED source_position;
 layout(set = 0, binding = 11) uniform SAMPLED source_normal;
@@ -96,10 +112,24 @@ POSITION_WORDS load_position(PLACE place) {
 uvec2 load_normal(PLACE place) {
     return texelFetch(source_normal, place, 0).rg;
 }
+
+#ifdef HAS_COLOR
+layout(set = 0, binding = 18) uniform SAMPLED source_color;
+
+uvec2 load_color(PLACE place) {
+    return texelFetch(source_color, place, 0).rg;
+}
+#endif
 #endif
 
 SurfaceTexel load_surface(PLACE place) {
-    return SurfaceTexel(load_position(place), load_normal(place));
+    SurfaceTexel texel;
+    texel.position = load_position(place);
+    texel.normal = load_normal(place);
+#ifdef HAS_COLOR
+    texel.color = load_color(place);
+#endif
+    return texel;
 }
 #endif
 
@@ -111,6 +141,9 @@ layout(std430, set = 0, binding = 12) writeonly buffer TargetPosition { POSITION
 layout(std430, set = 0, binding = 12) writeonly buffer TargetPosition { POSITION_WORDS texel[]; } target_position;
 #endif
 layout(std430, set = 0, binding = 13) writeonly buffer TargetNormal { uvec4 run[]; } target_normal;
+#ifdef HAS_COLOR
+layout(std430, set = 0, binding = 19) writeonly buffer TargetColor { uvec4 run[]; } target_color;
+#endif
 
 void store_surfaces(PLACE first, SurfaceTexel run[RUN]) {
 #ifdef POSITION_RUN
@@ -120,23 +153,38 @@ void store_surfaces(PLACE first, SurfaceTexel run[RUN]) {
     target_position.texel[first + 1u] = run[1].position;
 #endif
     target_normal.run[first / 2u] = uvec4(run[0].normal, run[1].normal);
+#ifdef HAS_COLOR
+    target_color.run[first / 2u] = uvec4(run[0].color, run[1].color);
+#endif
 }
 #else
 #ifdef STORAGE_BUFFER
 layout(std430, set = 0, binding = 12) writeonly buffer TargetPosition { POSITION_WORDS texel[]; } target_position;
 layout(std430, set = 0, binding = 13) writeonly buffer TargetNormal { uvec2 texel[]; } target_normal;
+#ifdef HAS_COLOR
+layout(std430, set = 0, binding = 19) writeonly buffer TargetColor { uvec2 texel[]; } target_color;
+#endif
 
 void store_surface(PLACE place, SurfaceTexel texel) {
     target_position.texel[place] = texel.position;
     target_normal.texel[place] = texel.normal;
+#ifdef HAS_COLOR
+    target_color.texel[place] = texel.color;
+#endif
 }
 #else
 layout(POSITION_FORMAT, set = 0, binding = 12) writeonly uniform STORED target_position;
 layout(rg32ui, set = 0, binding = 13) writeonly uniform STORED target_normal;
+#ifdef HAS_COLOR
+layout(rg32ui, set = 0, binding = 19) writeonly uniform STORED target_color;
+#endif
 
 void store_surface(PLACE place, SurfaceTexel texel) {
     imageStore(target_position, place, POSITION_TEXEL(texel.position));
     imageStore(target_normal, place, uvec4(texel.normal, 0u, 0u));
+#ifdef HAS_COLOR
+    imageStore(target_color, place, uvec4(texel.color, 0u, 0u));
+#endif
 }
 #endif
 

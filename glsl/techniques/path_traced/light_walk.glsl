@@ -1,5 +1,5 @@
 // Light between surfaces as virtual point lights give it, where it may pass through walls: a light walk of its own for each
-// pixel and sample, whose landings light the pixel's point with the facing test and the clamp of vpl_irradiance. Twin of
+// pixel and sample, whose landings light the pixel's point by VPL_BRDF, with the facing test and the clamp of vpl_irradiance. Twin of
 // the walk: src/lights/vpl.rs. Its mean is what infinitely many virtual point lights sum up to.
 #ifndef PATH_TRACED_LIGHT_WALK_GLSL
 #define PATH_TRACED_LIGHT_WALK_GLSL
@@ -40,8 +40,19 @@ LightStart start_on_punctual(float number, float chance) {
     return start;
 }
 
-// Irradiance of the point.
-vec3 walked_irradiance(SurfacePoint point) {
+// What a virtual light does to a point: irradiance under Lambert's, which all lights share; else radiance towards the eye.
+vec3 added_by(VplBlock vpl, SurfacePoint point, vec3 to_eye) {
+    vec3 received = vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+    if (VPL_BRDF == BRDF_LAMBERT) {
+        return received;
+    }
+    vec3 to_vpl = vpl.position_ws.xyz - point.position_ws;
+    to_vpl *= inversesqrt(max(dot(to_vpl, to_vpl), 1e-12));
+    return received * brdf(VPL_BRDF, point.surface, point.normal_ws, to_vpl, to_eye);
+}
+
+// Radiance that the point sends towards the eye.
+vec3 walked_radiance(SurfacePoint point, vec3 to_eye) {
     vec3 received = vec3(0.0);
     if (params.emitter_count + params.punctual_count == 0u) {
         return received;
@@ -56,7 +67,7 @@ vec3 walked_irradiance(SurfacePoint point) {
         VplBlock vpl;
         start = start_on_emitter(min((number - params.punctual_part) / part, 0.99999994), part, vpl);
         if (DIRECT_LIGHT != 0u) {
-            received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+            received += added_by(vpl, point, to_eye);
         }
     }
     vec3 origin = start.origin;
@@ -73,14 +84,14 @@ vec3 walked_irradiance(SurfacePoint point) {
             flux = is_black ? vec3(0.0) : flux * albedo_of(landed.surface);
             vec4 intensity = vec4(flux / PI, 0.0);
             VplBlock vpl = VplBlock(vec4(landed.position_ws, 0.0), vec4(landed.plane_ws, 0.0), intensity);
-            received += vpl_irradiance(vpl, point.position_ws, point.normal_ws, params.least_squared);
+            received += added_by(vpl, point, to_eye);
             origin = off_surface(landed);
             direction = cosine_direction(landed.plane_ws, next_pair());
             goes_on = flux != vec3(0.0);
         }
     }
     expect_done(landing == WALK_LANDINGS || !goes_on);
-    return received;
+    return VPL_BRDF == BRDF_LAMBERT ? albedo_of(point.surface) / PI * received : received;
 }
 
 #endif

@@ -13,6 +13,8 @@
 layout(local_size_x = 64, local_size_y = 1, local_size_x_id = 0, local_size_y_id = 1) in;
 // BRDF_.
 layout(constant_id = 2) const uint BRDF_KIND = 2;
+// BRDF_LAMBERT or BRDF_GGX: how virtual point lights are scattered.
+layout(constant_id = 118) const uint VPL_BRDF = 0;
 // Surfaces that scatter a path at most.
 layout(constant_id = 5) const uint BOUNCES = 1;
 // 1: paths end by chance where they carry little.

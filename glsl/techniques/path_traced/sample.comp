@@ -287,7 +287,7 @@ vec3 radiance_along(vec2 at_px) {
                 panel = dimmed(panel, point.position_ws);
                 is_waiting = true;
                 if (IS_WALKED != 0u) {
-                    radiance += path.throughput * albedo_of(point.surface) / PI * walked_irradiance(point);
+                    radiance += path.throughput * walked_radiance(point, to_eye);
                 }
                 scatter_at(path, point, hit.distance);
             }

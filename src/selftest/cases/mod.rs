@@ -81,6 +81,7 @@ mod tests {
             "rig",
             "sun",
             "brdf",
+            "vpl-brdf",
             "light-visibility",
             "vpl-visibility",
             "ambient-visibility",

@@ -3,7 +3,7 @@
 use super::choices::{Choices, VplShadow};
 use super::frame::InterleavedFrame;
 use super::split_method::{Split, SplitMethod};
-use super::split_passes::SplitPasses;
+use super::split_passes::{SplitPasses, SubBuffers};
 use super::sub_buffers::{Stage, Texels};
 use crate::error::Result;
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::hidden::HIDDEN_HEAD;
@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 const UNSEEN: &str = "vpl_shadow.hidden";
 const SPLIT: &str = "split.normal";
+const SPLIT_COLOR: &str = "split.color";
 const SHADED: &str = "shade.irradiance";
 const UPSCALED: &str = "upscale.irradiance";
 const GATHERED: &str = "gather.irradiance";
@@ -30,6 +31,7 @@ pub const AOVS: &[&str] = &[
     "gbuffer.color.id",
     UNSEEN,
     SPLIT,
+    SPLIT_COLOR,
     SHADED,
     UPSCALED,
     GATHERED,
@@ -48,14 +50,21 @@ pub fn left_out(choices: &Choices, values: &Values) -> Vec<(&'static str, String
         left_out.push((UPSCALED, format!("--split {split} interpolates nothing; subsample does")));
     }
     if choices.split.copies().is_none() {
-        for stage in [SPLIT, GATHERED] {
+        for stage in [SPLIT, SPLIT_COLOR, GATHERED] {
             left_out.push((
                 stage,
                 format!("--split {split} copies nothing; one-pass, two-pass, tile, layered and fragment do"),
             ));
         }
-    } else if choices.gather_filters() {
-        left_out.push((GATHERED, "with --fuse on the gather filters what it reads; --fuse off makes it".to_owned()));
+    } else {
+        if choices.gather_filters() {
+            left_out
+                .push((GATHERED, "with --fuse on the gather filters what it reads; --fuse off makes it".to_owned()));
+        }
+        if !choices.moved.has_color() {
+            let why = "with --sub-buffer-color off position and normal alone are split; on moves the colour too";
+            left_out.push((SPLIT_COLOR, why.to_owned()));
+        }
     }
     if choices.filter == Filter::None {
         let why = match choices.split.sums_all() {
@@ -86,6 +95,17 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
         (SPLIT, SplitPasses::SubBuffers(sub_buffers)) => {
             let last = sub_buffers.copies.storage.read(Stage::Compute);
             rgb(side_by_side(frame, gpu, &sub_buffers.surface.normal, last, decode::normal)?)
+        }
+        (SPLIT_COLOR, SplitPasses::SubBuffers(sub_buffers)) => {
+            let SubBuffers { copies, surface, .. } = sub_buffers;
+            let color = surface.color.as_ref().expect("a stage that the settings leave out is refused");
+            // Where shading has not read it, the split touched it last.
+            let stage = if frame.shade.parts.has_color() { Stage::Compute } else { copies.stage() };
+            let last = match frame.shade.parts.has_color() {
+                true => copies.storage.read(stage),
+                false => copies.storage.written(stage),
+            };
+            rgb(side_by_side(frame, gpu, color, last, decode::halves)?)
         }
         (SHADED, SplitPasses::SubBuffers(sub_buffers)) => {
             let last = sub_buffers.copies.storage.read(sub_buffers.copies.stage());

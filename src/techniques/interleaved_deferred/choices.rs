@@ -3,7 +3,7 @@
 use super::mapping::mapping;
 use super::run_settings::run_count;
 use super::split_method::{Copier, Copies, Form, MaskKind, ShadeBy, SplitMethod};
-use super::sub_buffers::{Stage, Storage};
+use super::sub_buffers::{Stage, Storage, texel_bytes};
 use super::subsets::subsets;
 use super::vpl_shadow::held::VplMaps;
 use crate::bvh::Bvh;
@@ -14,9 +14,10 @@ use crate::gpu::shader::structs::{BlendParams, MappingParams, SubsetBlock};
 use crate::passes::blend;
 use crate::passes::direct::ShadingSettings;
 use crate::passes::filter::{Filter, Kernel, StopBits};
+use crate::passes::gbuffer::SurfaceParts;
 use crate::passes::workgroup;
 use crate::sampling::pattern::Pattern;
-use crate::settings::{PositionStorage, Values, WORKGROUP};
+use crate::settings::{Brdf, PositionStorage, Values, WORKGROUP};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::techniques::until_error::until_error;
 use crate::techniques::{Inputs, NamedPattern};
@@ -90,6 +91,12 @@ pub struct Choices {
     pub run_count: u32,
     /// The estimated relative error at which they end before.
     pub until_error: Option<f64>,
+    /// How surfaces scatter virtual lights, and punctual ones that are joined to the subsets.
+    pub vpl_brdf: Brdf,
+    /// What shading reads of a surface.
+    pub shaded: SurfaceParts,
+    /// What a split moves into sub-buffers: at least as much.
+    pub moved: SurfaceParts,
     pub vpl_shadow: VplShadow,
     /// Shadow maps of virtual lights, where they have any; `PreparedInterleaved` knows what room they have.
     pub vpl_maps: Option<VplMaps>,
@@ -135,8 +142,10 @@ impl Choices {
         let direct_pattern =
             if split.sums_all() || direct != Direct::Interleaved { [1, 1] } else { direct_pattern(values, pattern)? };
         let light_pattern = if split.sums_all() { [1, 1] } else { pattern };
+        let shading = ShadingSettings::new(values, lights, scene, caps);
+        let (shaded, moved) = surface_parts(values, split, shading.direct.extras)?;
         let choices = Self {
-            shading: ShadingSettings::new(values, lights, scene, caps),
+            shading,
             split,
             mapping,
             shade_by: values.choice("shade-by"),
@@ -152,6 +161,9 @@ impl Choices {
             vpl_count: values.integer("vpls") as u32,
             run_count: run_count(values),
             until_error: until_error(values),
+            vpl_brdf: values.choice("vpl-brdf"),
+            shaded,
+            moved,
             vpl_shadow: values.choice("vpl-shadow"),
             vpl_maps: None,
             direct_count: if direct == Direct::None { 0 } else { lights.lights.len() as u32 },
@@ -219,7 +231,7 @@ impl Choices {
     /// Workgroup memory that `--split tile` needs for a block.
     fn tile_bytes(&self) -> u64 {
         let [x, y] = self.block().map(u64::from);
-        x * y * tile_texel_bytes(self.shading.position)
+        x * y * texel_bytes(self.moved, self.shading.position)
     }
 
     /// The block after rounding; the pattern itself where the split has none.
@@ -242,6 +254,7 @@ impl Choices {
         if let Some(copies) = self.split.copies() {
             let storage = if copies.storage == Storage::Buffer { "buffer" } else { "image" };
             resolved.insert("storage", storage.to_owned());
+            resolved.insert("sub-buffer-color", self.moved.color_name().to_owned());
             if copies.has_blocks() {
                 let [x, y] = self.block();
                 resolved.insert("block", format!("{x}x{y}"));
@@ -291,9 +304,30 @@ impl Choices {
     }
 
     /// The constants of irradiance.glsl that every split sets.
-    pub fn irradiance_constants(&self) -> [(&'static str, u32); 3] {
+    pub fn irradiance_constants(&self) -> Vec<(&'static str, u32)> {
         let [shadow, offset] = self.shading.direct.shadow_constants();
-        [shadow, offset, ("HAS_JOINED", u32::from(self.joined_count() > 0))]
+        let joined = ("HAS_JOINED", u32::from(self.joined_count() > 0));
+        [shadow, offset, joined].into_iter().chain(self.shaded.constant()).collect()
+    }
+
+    /// Those of compute shaders that move pixels of the frame.
+    pub fn split_constants(&self) -> Vec<(&'static str, u32)> {
+        self.shading.workgroup_constants().into_iter().chain(self.moved.constant()).collect()
+    }
+
+    /// Those of blended surfaces.
+    pub fn blend_constants(&self) -> Vec<(&'static str, u32)> {
+        let vpl_brdf = ("VPL_BRDF", self.vpl_brdf as u32);
+        self.shading.direct.light_constants().into_iter().chain([vpl_brdf]).collect()
+    }
+
+    /// What the split, or the shading where nothing is split, reads of the frame, and by what.
+    pub fn read_of_frame(&self) -> (SurfaceParts, Stage) {
+        match self.split {
+            SplitMethod::Copy(copies) => (self.moved, copies.stage()),
+            SplitMethod::Masked(_) => (self.shaded, Stage::Fragment),
+            _ => (self.shaded, Stage::Compute),
+        }
     }
 
     /// Texels that a thread shades with one reading of its list of lights; 1 where each pixel finds its own.
@@ -320,12 +354,13 @@ impl Choices {
         if self.shade_by == ShadeBy::Dispatch { Stage::Compute } else { Stage::Fragment }
     }
 
-    /// The shaders' axis VPL_SHADOW, where a pass has looked for what is hidden.
-    pub fn shade_axis(&self) -> &'static str {
-        match self.vpl_shadow {
+    /// The shaders' axes POSITION, VPL_SHADOW, where a pass has looked for what is hidden, and VPL_BRDF.
+    pub fn shade_axes(&self) -> [&'static str; 3] {
+        let shadow = match self.vpl_shadow {
             VplShadow::None => "none",
             VplShadow::Ray | VplShadow::Map => "tested",
-        }
+        };
+        [self.shading.position.name(), shadow, self.vpl_brdf.name()]
     }
 
     /// The same of what blends, which no G-buffer holds: it looks for itself, by rays, because no map waits for it.
@@ -359,9 +394,21 @@ impl Choices {
     }
 }
 
-/// A texel of a block in workgroup memory: its normal and its position.
-fn tile_texel_bytes(position: PositionStorage) -> u64 {
-    8 + position.bytes()
+/// What shading reads of a surface, and what a split moves for it.
+///
+/// Errors: `--sub-buffer-color off` where shading reads the colour (exit code 2).
+fn surface_parts(values: &Values, split: SplitMethod, has_extras: bool) -> Result<(SurfaceParts, SurfaceParts)> {
+    let material = SurfaceParts::Material { has_extras };
+    let is_glossy = !values.is("vpl-brdf", Brdf::Lambert);
+    let asked = values.unless_auto("sub-buffer-color", |values, key| values.is_on(key));
+    if is_glossy && asked == Some(false) && split.copies().is_some() {
+        return Err(Error::request(format!(
+            "{NAME}: --sub-buffer-color off with --vpl-brdf ggx: a mirror part needs the colour of surfaces in sub-buffers"
+        ))
+        .note("--sub-buffer-color auto or on; a --split that copies nothing; or --vpl-brdf lambert"));
+    }
+    let when = |has_color: bool| if has_color { material } else { SurfaceParts::Geometry };
+    Ok((when(is_glossy), when(is_glossy || asked == Some(true))))
 }
 
 /// Limits of the splits on a device, by the limits that `Choices::new` and the plan refuse with.
@@ -371,12 +418,13 @@ pub fn bounds(caps: &Caps) -> Vec<(&'static str, String)> {
     let (unorm16, float) = (PositionStorage::Unorm16, PositionStorage::Float);
     let range = limits.max_storage_buffer_range_bytes;
     let shared = u64::from(limits.max_shared_memory_bytes);
+    let tile = |position| texels(shared, texel_bytes(SurfaceParts::Geometry, position));
     let two = |unit: &str, most: [u64; 2]| format!("{} {unit}, {} with --position float", most[0], most[1]);
     vec![
         ("--storage buffer", two("pixels a frame", [unorm16, float].map(|position| texels(range, position.bytes())))),
         ("--storage image", format!("{} px a side", limits.max_image_side_px)),
         ("--split layered", format!("{} subsets", limits.max_image_layers)),
-        ("--split tile", two("pixels a block", [unorm16, float].map(|p| texels(shared, tile_texel_bytes(p))))),
+        ("--split tile", two("pixels a block", [unorm16, float].map(tile))),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! Composite: albedo times filtered irradiance, direct light, emission (Segovia 2006, section 4.5). Shader: composite.comp.
+//! Composite: albedo times filtered irradiance, or what glossy surfaces are multiplied by, direct light, emission (Segovia 2006, section 4.5). Shader: composite.comp.
 //! reads  the G-buffer, the irradiance, the punctual lights      writes  composite.color  image, RGBA32F, frame extent
 
 use super::choices::Choices;
@@ -11,6 +11,7 @@ use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Traffic};
 use crate::passes::direct::DirectGpu;
 use crate::passes::gbuffer::{GBuffer, emissive_name};
+use crate::settings::Brdf;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
@@ -38,7 +39,7 @@ impl Composite {
             row_pitch: mapping.row_pitch(),
             direct_full: u32::from(choices.direct_full),
             opaque_zero: 0,
-            _unused: 0,
+            is_glossy: u32::from(choices.vpl_brdf != Brdf::Lambert),
         };
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)?, params, texels })
     }

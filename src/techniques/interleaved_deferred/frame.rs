@@ -78,7 +78,8 @@ impl InterleavedFrame {
             words_a_point: vpl_shadow::words_a_point(choices),
             _unused: [0; 3],
         };
-        let shade = ShadeGpu::new(gpu, resources, subsets, params)?;
+        let shade = ShadeGpu::new(gpu, resources, subsets, params, choices.shaded)?;
+        let (early, reader) = choices.read_of_frame();
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         Ok(Self {
             gbuffer_pass: GBufferPass::new(
@@ -105,7 +106,7 @@ impl InterleavedFrame {
                 scene,
                 inputs.view,
                 choices.blend_params(least_squared),
-                &shading.direct.light_constants(),
+                &choices.blend_constants(),
                 &BlendTarget {
                     vpl_shadow: choices.blend_axis(),
                     over: if choices.run_count > 1 { Over::Nothing } else { Over::Picture },
@@ -115,7 +116,9 @@ impl InterleavedFrame {
             blend_lists: (inputs.stats.has_blend)
                 .then(|| blend::upload_lists(gpu, resources, NAME, blended))
                 .transpose()?,
-            gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?.kept(choices.run_count > 1),
+            gbuffer: GBuffer::new(gpu, resources, NAME, shading.position, has_emissive)?
+                .kept(choices.run_count > 1)
+                .read_early(early, reader.samples()),
             runs,
             accumulate: Accumulate::new(gpu, resources, choices, inputs.stats.has_blend)?,
             direct,

@@ -21,7 +21,9 @@
 //!   software drivers, they lie one after the other
 //! - by default compute shaders shade sub-buffers, where the paper drew; `--shade-by viewport` and `quad` draw
 //! - sub-buffers are padded to whole patterns or blocks, so the tiled buffer is at least as large as the frame, not equal
-//! - only position and normal are split: shading sums irradiance, virtual point lights are Lambert
+//! - only position and normal are split, where nothing needs more (`--sub-buffer-color on` moves the colour too, as in the paper)
+//! - virtual point lights light surfaces as diffuse ones by default; with `--vpl-brdf ggx` what is shaded is divided by the surface's
+//!   colour before the filter, where the paper says nothing of how a glossy term is filtered
 //! - the direct lights' pattern, made by clustering sub-buffers (section 4.6), may be of any divisors of the split's, where
 //!   the paper says powers of two
 //! - the filter stops at a discontinuity in its own direction; `--discontinuity any` stops at any of the three, as the paper does
@@ -72,7 +74,7 @@ use crate::passes::{direct, gbuffer};
 use crate::picture::Aov;
 use crate::plan::Plan;
 use crate::resident::SceneGpu;
-use crate::settings::{LIGHT_LISTS, Setting, Values};
+use crate::settings::{Brdf, LIGHT_LISTS, Setting, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use choices::{Choices, Direct, VplShadow};
 use frame::{FrameLights, InterleavedFrame};
@@ -137,8 +139,8 @@ impl Technique for InterleavedDeferred {
         choices::bounds(caps)
     }
 
-    /// Direct light, and what as many bounces as light walks have bring: unshadowed (SNSM) and clamped, or with `--vpl-shadow ray` as it
-    /// is, by `--brdf`.
+    /// Direct light, and what as many bounces as light walks have bring: unshadowed (SNSM), clamped and by `--vpl-brdf`, or
+    /// with `--vpl-shadow` as it is, by `--brdf`.
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let mut settings = vec![
             ("light-visibility", light_visibility(values, lights, 0)?),
@@ -155,8 +157,8 @@ impl Technique for InterleavedDeferred {
             settings.push(("pixel", "middle".to_owned()));
         }
         match values.choice("direct") {
-            // Joined to the subsets, direct light is diffuse.
-            Direct::Interleaved => settings.push(("brdf", "lambert".to_owned())),
+            // Joined to the subsets, direct light is scattered as that of virtual lights.
+            Direct::Interleaved => settings.push(("brdf", values.choice::<Brdf>("vpl-brdf").name().to_owned())),
             Direct::None => {
                 return Err(Error::request("--direct none: path tracing cannot leave out direct light")
                     .note("--direct full and interleaved have a reference"));

@@ -7,8 +7,8 @@ use super::vpl_shadow::unrolled::{MapIndex, MapShape};
 use crate::passes::filter::{Filter, WalkEnd};
 use crate::settings::{
     BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION,
-    POSITION_THRESHOLD, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_SLOPE_BIAS, Setting, TEXELS, Unread, VPL_CLAMP, Values,
-    WORKGROUP,
+    POSITION_THRESHOLD, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_SLOPE_BIAS, Setting, TEXELS, Unread, VPL_BRDF, VPL_CLAMP,
+    Values, WORKGROUP,
 };
 
 /// Its rows of the table.
@@ -69,6 +69,18 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Nothing)
     },
     Setting {
+        key: "sub-buffer-color",
+        kind: Kind::Choice(&["off", "on"]),
+        auto: true,
+        default: "auto",
+        paper: "Segovia 2006, 4.1, 4.2",
+        help: "Whether sub-buffers have the surfaces' colour, 8 bytes a pixel beside position and normal: on is what the paper moves, \
+               24 bytes a pixel with --position half or unorm16; off leaves it out, which irradiance does not need; auto: on with \
+               --vpl-brdf ggx alone, which reads it",
+        unread: without_copy,
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
         key: "block",
         symbol: "p x q",
         kind: Kind::Sides { min: 1, max: 1024 },
@@ -107,6 +119,7 @@ pub const SETTINGS: &[Setting] = &[
         ..Setting::changing(Changes::Picture)
     },
     VPL_CLAMP,
+    VPL_BRDF,
     Setting {
         key: "vpl-shadow",
         kind: Kind::Choice(VplShadow::WORDS),
@@ -178,7 +191,7 @@ pub const SETTINGS: &[Setting] = &[
         kind: Kind::Choice(Direct::WORDS),
         default: "full",
         paper: "Segovia 2006, 4.6",
-        help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets as diffuse light \
+        help: "How the scene's own lights are shaded: on every pixel by --brdf (full), in the subsets by --vpl-brdf \
                (interleaved), or not at all (none)",
         ..Setting::changing(Changes::Picture)
     },

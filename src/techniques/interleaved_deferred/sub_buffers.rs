@@ -8,7 +8,9 @@ use crate::error::Result;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, AccessSet, Barrier, Bound, Buffer, Edge, Gpu, Image, ImageDescription, readback};
+use crate::passes::gbuffer::SurfaceParts;
 use crate::plan::{Plan, Resources, Shape};
+use crate::settings::PositionStorage;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::units::Extent;
 use ash::vk;
@@ -202,63 +204,94 @@ impl Edge<'_, Texels> {
     }
 }
 
-/// Position and normal of each texel: what irradiance needs. Colour is not split, because the irradiance of a Lambert
-/// surface does not need it.
+/// Position and normal of each texel: what irradiance needs; and colour where splits move it, as the paper's do.
 pub struct Surface {
     pub position: Texels,
     pub normal: Texels,
+    pub color: Option<Texels>,
+}
+
+/// Parts of sub-buffers, in the order of fragment.frag's locations.
+fn part_names(parts: SurfaceParts) -> &'static [&'static str] {
+    if parts.has_color() { &["position", "normal", "color"] } else { &["position", "normal"] }
+}
+
+/// Bytes of a texel's `parts`: what few materials say lies in the colour's spare bits.
+pub fn texel_bytes(parts: SurfaceParts, position: PositionStorage) -> u64 {
+    position.bytes() + 8 + if parts.has_color() { 8 } else { 0 }
 }
 
 impl Surface {
-    /// Plans `what`.position and `what`.normal.
-    pub fn plan(
-        plan: &mut Plan,
-        what: &str,
-        mapping: &MappingParams,
-        storage: Storage,
-        position_bytes: u64,
-        writer: Stage,
-    ) {
-        storage.plan(plan, "split", &format!("{what}.position"), mapping, position_bytes, writer);
-        storage.plan(plan, "split", &format!("{what}.normal"), mapping, 8, writer);
+    /// Plans `what`.position, `what`.normal and what else `parts` have.
+    pub fn plan(plan: &mut Plan, what: &str, mapping: &MappingParams, sub_buffers: &Moved) {
+        let Moved { parts, storage, position, writer } = *sub_buffers;
+        for part in part_names(parts) {
+            let bytes = if *part == "position" { position.bytes() } else { 8 };
+            storage.plan(plan, "split", &format!("{what}.{part}"), mapping, bytes, writer);
+        }
     }
 
-    /// What a pass touches that touches both in one way.
-    pub fn touches(what: &str, access: Access) -> [(String, Access); 2] {
-        ["position", "normal"].map(|part| (format!("{NAME}.{what}.{part}"), access))
+    /// What a pass touches that touches `parts` in one way.
+    pub fn touches(what: &str, parts: SurfaceParts, access: Access) -> impl Iterator<Item = (String, Access)> {
+        part_names(parts).iter().map(move |part| (format!("{NAME}.{what}.{part}"), access))
     }
 
     /// Takes what `plan` put in.
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, what: &str, storage: Storage) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        what: &str,
+        parts: SurfaceParts,
+        storage: Storage,
+    ) -> Result<Self> {
         let mut texels = |part: &str| Texels::new(gpu, resources, &format!("{what}.{part}"), storage);
-        Ok(Self { position: texels("position")?, normal: texels("normal")? })
+        let color = parts.has_color().then(|| texels("color")).transpose()?;
+        Ok(Self { position: texels("position")?, normal: texels("normal")?, color })
     }
 
-    /// Names the access that touched both last.
+    /// Names the access that touched all parts last.
     pub fn from(&self, access: impl Into<AccessSet>) -> Edge<'_, Self> {
         Edge { resource: self, from: access.into() }
     }
 
-    /// First touch of the frame, old contents not needed.
-    pub fn discard(&self, access: Access) -> [Barrier; 2] {
-        [self.position.discard(access), self.normal.discard(access)]
+    /// All parts, in the order of fragment.frag's locations.
+    pub fn all(&self) -> impl Iterator<Item = &Texels> {
+        [&self.position, &self.normal].into_iter().chain(&self.color)
     }
 
-    /// What READS_SURFACE binds.
-    pub fn source(&self) -> [(&'static str, Bound<'_>); 2] {
-        [("source_position", self.position.source()), ("source_normal", self.normal.source())]
+    /// Those of its parts that are among `parts`.
+    fn some(&self, parts: SurfaceParts) -> impl Iterator<Item = &Texels> {
+        self.all().take(part_names(parts).len())
+    }
+
+    /// First touch of the frame, old contents not needed.
+    pub fn discard(&self, access: Access) -> impl Iterator<Item = Barrier> {
+        self.all().map(move |texels| texels.discard(access))
+    }
+
+    /// What READS_SURFACE binds of `parts`.
+    pub fn source(&self, parts: SurfaceParts) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
+        ["source_position", "source_normal", "source_color"].into_iter().zip(self.some(parts).map(Texels::source))
     }
 
     /// What WRITES_SURFACE binds.
-    pub fn target(&self) -> [(&'static str, Bound<'_>); 2] {
-        [("target_position", self.position.target()), ("target_normal", self.normal.target())]
+    pub fn target(&self) -> impl Iterator<Item = (&'static str, Bound<'_>)> {
+        ["target_position", "target_normal", "target_color"].into_iter().zip(self.all().map(Texels::target))
     }
 }
 
 impl Edge<'_, Surface> {
-    /// The next access of both.
-    pub fn to(self, access: Access) -> [Barrier; 2] {
-        let Surface { position, normal } = self.resource;
-        [position.from(self.from).to(access), normal.from(self.from).to(access)]
+    /// The next access of `parts`.
+    pub fn to(self, parts: SurfaceParts, access: Access) -> Vec<Barrier> {
+        self.resource.some(parts).map(|texels| texels.from(self.from).to(access)).collect()
     }
+}
+
+/// What a split moves, and how it lies and is written there.
+#[derive(Clone, Copy)]
+pub struct Moved {
+    pub parts: SurfaceParts,
+    pub storage: Storage,
+    pub position: PositionStorage,
+    pub writer: Stage,
 }

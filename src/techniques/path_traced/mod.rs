@@ -249,6 +249,7 @@ fn choices(inputs: &Inputs<'_>, sources: &Sources) -> Result<Choices> {
         ambient_visibility: values.choice("ambient-visibility"),
         walk_landings: is_walked.then_some(bounces - 1),
         brdf: values.choice::<Brdf>("brdf") as u32,
+        vpl_brdf: values.choice::<Brdf>("vpl-brdf") as u32,
         extras: inputs.scene.drawn_materials().any(Material::has_extras),
         workgroup: workgroup_of(inputs),
         ray_offset: RAY_OFFSET * inputs.scene.lasting_bounds().diagonal().max(1e-6),

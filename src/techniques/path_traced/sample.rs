@@ -38,6 +38,8 @@ pub struct Choices {
     /// Light walks instead of paths between surfaces, each with this many landings.
     pub walk_landings: Option<u32>,
     pub brdf: u32,
+    /// Under virtual lights, where light between surfaces is walked.
+    pub vpl_brdf: u32,
     pub extras: bool,
     pub workgroup: [u32; 2],
     /// Metres that a ray starts off its surface.
@@ -110,6 +112,7 @@ impl Sample {
             ("WORKGROUP_X", choices.workgroup[0]),
             ("WORKGROUP_Y", choices.workgroup[1]),
             ("BRDF_KIND", choices.brdf),
+            ("VPL_BRDF", choices.vpl_brdf),
             ("SURFACE_EXTRAS", u32::from(choices.extras)),
             ("RAY_OFFSET", choices.ray_offset.to_bits()),
             ("BOUNCES", choices.bounces),

@@ -4,7 +4,7 @@ use crate::choice::choices;
 use crate::resident::traced::TexelLevels;
 use crate::settings::{
     APERTURE, BRDF, Changes, EMISSIVE, FOCUS, Kind, LIGHT_RADIUS, MEDIUM, SHUTTER, STEREO, STEREO_EYES, Setting,
-    Unread, VOLUME, VPL_CLAMP, WORKGROUP, volume_name,
+    Unread, VOLUME, VPL_BRDF, VPL_CLAMP, WORKGROUP, volume_name,
 };
 use crate::shading::medium::Medium;
 use crate::techniques::until_error::MOST_SAMPLES;
@@ -150,8 +150,8 @@ pub const SETTINGS: &[Setting] = &[
         default: "on",
         paper: "Segovia 2006, 6.2",
         help: "Whether light between surfaces is stopped by what stands between them; off: the light that infinitely \
-               many virtual point lights without shadows would give, diffuse and with --vpl-clamp, from a separate \
-               light walk for each pixel",
+               many virtual point lights without shadows would give, by --vpl-brdf and with --vpl-clamp, from a \
+               separate light walk for each pixel",
         ..Setting::changing(Changes::Picture)
     },
     Setting {
@@ -211,6 +211,12 @@ pub const SETTINGS: &[Setting] = &[
     LIGHT_RADIUS,
     EMISSIVE,
     VPL_CLAMP,
+    Setting {
+        unread: |values| {
+            Unread::with(values, "vpl-visibility", &["on"], "light between surfaces is scattered by --brdf")
+        },
+        ..VPL_BRDF
+    },
     BRDF,
     WORKGROUP,
 ];

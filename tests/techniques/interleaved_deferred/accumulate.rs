@@ -1,7 +1,7 @@
 //! Progressive rendering (`--accumulate`, `--until-error`; Segovia 2006, section 6.3).
 
 use super::vpl_maps::screened;
-use super::{NAME, splits};
+use super::{NAME, require_same_in_every_split};
 use crate::support::difference::require_same;
 use crate::support::program::Program;
 use crate::support::watched::{Changes, Watched, both};
@@ -61,17 +61,10 @@ fn blended_surfaces_have_the_lights_of_all_runs() {
 fn every_split_sums_the_same_runs_up() {
     let watched = screened();
     let way = both(&COMMON, &[("vpls", "48"), ("accumulate", "3"), ("vpl-shadow", "map"), ("vpl-shadow-maps", "20")]);
-    let mut branch = None;
-    for split in splits() {
-        let picture = watched.picture(NAME, &both(&way, &split));
-        match &branch {
-            None => branch = Some(picture),
-            Some(branch) => require_same(&watched.session.gpu, branch, &picture, &split),
-        }
-    }
+    let branch = require_same_in_every_split(&watched, &way);
     // There is something to tell apart.
     let one = watched.picture(NAME, &both(&way, &[("split", "branch"), ("accumulate", "1")]));
-    assert!(error(&one, &branch.unwrap()) > 0.01);
+    assert!(error(&one, &branch) > 0.01);
 }
 
 /// What is not interleaved, and what is shaded at one pixel of each pattern.

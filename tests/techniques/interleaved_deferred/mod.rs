@@ -6,13 +6,16 @@ mod discontinuity;
 mod shade_by;
 mod split;
 mod subsample;
+mod vpl_brdf;
 mod vpl_maps;
 mod vpl_shadow;
 
 use crate::support::choices::{Way, is_possible, ways};
-use crate::support::watched::{Changes, both};
+use crate::support::difference::require_same;
+use crate::support::watched::{Changes, Watched, both};
 use quincunx::caps::known;
 use quincunx::job::Job;
+use quincunx::picture::Picture;
 use quincunx::selftest::cases::SPLITS;
 use quincunx::{study, techniques};
 use std::collections::BTreeSet;
@@ -28,6 +31,19 @@ pub fn splits() -> Vec<Way> {
     splits.sort_by_key(|way| way[0].1 != "branch");
     assert_eq!(splits[0], [("split", "branch")]);
     splits
+}
+
+/// The picture of `branch`, whose bits every other split must have.
+pub fn require_same_in_every_split(watched: &Watched, changes: Changes<'_>) -> Picture {
+    let mut branch = None;
+    for split in splits() {
+        let picture = watched.picture(NAME, &both(changes, &split));
+        match &branch {
+            None => branch = Some(picture),
+            Some(branch) => require_same(&watched.session.gpu, branch, &picture, &split),
+        }
+    }
+    branch.expect("it is the first")
 }
 
 /// Those that copy into sub-buffers and back: others do not read `--storage`.

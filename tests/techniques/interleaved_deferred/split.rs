@@ -13,7 +13,7 @@ const TECHNIQUE: &str = "interleaved_deferred";
 const STAGES: &[&str] = &["gbuffer.normal", "split.normal", "shade.irradiance", "gather.irradiance"];
 
 /// A picture of sub-buffers side by side, back in frame order: each place says which pixel it shows.
-fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
+pub fn back_in_frame_order(side_by_side: &[[f32; 3]], extent: Extent, pattern: [u32; 2]) -> Vec<[f32; 3]> {
     let mut pixels = vec![[f32::NAN; 3]; extent.pixel_count() as usize];
     for (shown, [x, y]) in side_by_side.iter().zip(mapping(extent, pattern, pattern).side_by_side()) {
         pixels[(y * extent.width + x) as usize] = *shown;
@@ -98,16 +98,16 @@ fn both_methods_shade_the_same_irradiance() {
 #[test]
 fn a_stage_that_the_settings_leave_out_is_refused() {
     let watched = Watched::open("cornell");
-    let common = [("size", "33x17"), ("vpls", "64"), ("vpl-shadow", "ray")];
+    let common = [("size", "33x17"), ("vpls", "64"), ("vpl-shadow", "ray"), ("sub-buffer-color", "on")];
     let stages = quincunx::techniques::find(TECHNIQUE).unwrap().aovs();
     let filtered = ["discontinuity.flags", "filter.irradiance"];
-    let split = ["split.normal", "gather.irradiance"];
+    let split = ["split.normal", "split.color", "gather.irradiance"];
     let upscaled = ["upscale.irradiance"];
     // What copies reads --storage.
     let copies = |word| is_possible(TECHNIQUE, &[("split", word), ("storage", "image")]);
     let left_out_by = |word| match word {
         "none" => [&split[..], &filtered, &upscaled].concat(),
-        "subsample" => [split, filtered].concat(),
+        "subsample" => [&split[..], &filtered].concat(),
         _ if copies(word) => upscaled.to_vec(),
         _ => [&split[..], &upscaled].concat(),
     };
@@ -116,6 +116,7 @@ fn a_stage_that_the_settings_leave_out_is_refused() {
         (("filter", "none"), [&filtered[..], &upscaled].concat()),
         (("pattern", "1x1"), [&filtered[..], &upscaled].concat()),
         (("pattern", "2x2"), upscaled.to_vec()),
+        (("sub-buffer-color", "off"), [&upscaled[..], &["split.color"]].concat()),
         (("vpl-shadow", "none"), [&upscaled[..], &["vpl_shadow.hidden"]].concat()),
     ];
     for (change, missing) in by_split.chain(by_others) {

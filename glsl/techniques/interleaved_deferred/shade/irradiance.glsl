@@ -1,6 +1,9 @@
 // Irradiance at a surface point from one subset of the lights: virtual point lights, then punctual lights that were
 // joined to the subsets (--direct interleaved). Every method of the split calls this one function, from compute shaders
 // and from a fragment shader; where the irradiance goes is theirs.
+//
+// With the axis VPL_BRDF=ggx it is what the surface sends towards the eye, in the units of the irradiance: pi times the radiance over
+// the colour of demodulation.glsl.
 #ifndef INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 #define INTERLEAVED_DEFERRED_IRRADIANCE_GLSL
 
@@ -10,6 +13,9 @@
 #include "shading/subset.glsl"
 #include "techniques/interleaved_deferred/shade/params.glsl"
 #include "techniques/interleaved_deferred/vpl_shadow/hidden.glsl"
+#ifdef VPL_BRDF_GGX
+#include "techniques/interleaved_deferred/demodulation.glsl"
+#endif
 
 // Points that a thread shades.
 layout(constant_id = 2) const uint TEXELS = 1;
@@ -35,6 +41,10 @@ layout(std430, set = 0, binding = 7) readonly buffer Hidden { uint hidden[]; };
 vec3 point_position_ws[TEXELS];
 vec3 point_normal_ws[TEXELS];
 bool point_has_surface[TEXELS];
+#ifdef VPL_BRDF_GGX
+Surface point_surface[TEXELS];
+vec3 point_eye_ws[TEXELS];
+#endif
 #ifdef VPL_SHADOW_TESTED
 // Its first word of `hidden`.
 uint point_hidden_at[TEXELS];
@@ -59,6 +69,23 @@ void set_point(uint i, bool exists, uvec2 normal_bits, POSITION_WORDS position, 
     point_position_ws[i] = unpack_position(frame, position, pixel);
 }
 
+#ifdef VPL_BRDF_GGX
+// The i-th point's material, and where it is seen from; after `set_point`. `color`: as color_words of material_of_frame.glsl.
+void set_material(uint i, uvec2 normal_bits, uvec2 color) {
+    vec2 roughness_metallic = unpack_roughness_metallic(normal_bits);
+    float f0 = SURFACE_EXTRAS != 0u ? f0_of_extras(last16(color)) : DEFAULT_DIELECTRIC_F0;
+    point_surface[i] = Surface(unpack_halves(color), roughness_metallic.y, roughness_metallic.x, f0);
+    point_eye_ws[i] = to_eye(frame, point_position_ws[i]);
+}
+
+// What the i-th point makes of irradiance from a direction, which is above its surface where that is not 0.
+vec3 seen_of(vec3 received, vec3 to_light_ws, uint i) {
+    precise vec3 reflected = brdf(BRDF_GGX, point_surface[i], point_normal_ws[i], to_light_ws, point_eye_ws[i]) * received;
+    precise vec3 seen = PI * reflected / modulus_of(point_surface[i]);
+    return seen;
+}
+#endif
+
 bool has_any_surface() {
     bool any_surface = false;
     for (uint i = 0u; i < TEXELS; i++) {
@@ -78,7 +105,13 @@ void add_to(uint i, vec3 received) {
 }
 
 vec3 received_from(VplBlock vpl, uint i) {
-    return vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
+    vec3 received = vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
+#ifdef VPL_BRDF_GGX
+    precise vec3 to_vpl = vpl.position_ws.xyz - point_position_ws[i];
+    // As long as a light may be near that still gives any.
+    received = seen_of(received, to_vpl * inversesqrt(max(dot(to_vpl, to_vpl), 1e-12)), i);
+#endif
+    return received;
 }
 
 // Adds to each point what it receives from a subset's lights from `first` to `end`, of those that it sees where that was tested.
@@ -140,6 +173,9 @@ void shade_points(SubsetBlock subset) {
             bool faces = point_has_surface[i] && cosine > 0.0 && incident.irradiance != vec3(0.0);
             if (faces && !is_shadowed(light, incident, i)) {
                 precise vec3 received = incident.irradiance * cosine;
+#ifdef VPL_BRDF_GGX
+                received = seen_of(received, incident.direction_ws, i);
+#endif
                 add_to(i, received);
             }
         }

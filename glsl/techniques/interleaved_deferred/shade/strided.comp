@@ -2,10 +2,9 @@
 // nothing is copied. All subsets in one dispatch, workgroups numbered by subset (`--split remap`, later practice), or a
 // dispatch a subset (`--split indirect`, Segovia 2006, section 3.1). With the pattern 1x1 it is plain deferred shading of
 // all lights (`--split none`). Pass: src/techniques/interleaved_deferred/shade/strided.rs.
-// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested VPL_BRDF=lambert|ggx
 #version 460
-#include "passes/gbuffer_read.glsl"
-#include "techniques/interleaved_deferred/shade/irradiance.glsl"
+#include "techniques/interleaved_deferred/shade/of_frame.glsl"
 #include "techniques/interleaved_deferred/shade/listed.glsl"
 
 layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
@@ -24,7 +23,7 @@ void main() {
         uvec2 pixel = pixel_at(subset, listed(i));
         bool exists = is_in_frame(params.mapping, pixel);
         pixel = min(pixel, last);
-        set_point(i, exists, normal_words(pixel), position_words(pixel), pixel, place_of_pixel(pixel));
+        set_point_of_frame(i, exists, pixel, place_of_pixel(pixel));
     }
     shade_points(subsets[subset]);
     for (uint i = 0u; i < TEXELS; i++) {

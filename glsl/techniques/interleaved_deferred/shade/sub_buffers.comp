@@ -1,12 +1,11 @@
 // Each sub-buffer shaded with its own lights: one light list for neighbouring threads. Segovia 2006, section 4.3 (SNSM).
 // Pass: src/techniques/interleaved_deferred/shade/sub_buffers.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers VPL_SHADOW=none|tested
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers VPL_SHADOW=none|tested VPL_BRDF=lambert|ggx
 #version 460
 #include "passes/gbuffer.glsl"
 #define READS_SURFACE
 #define WRITES_IRRADIANCE
-#include "techniques/interleaved_deferred/sub_buffers.glsl"
-#include "techniques/interleaved_deferred/shade/irradiance.glsl"
+#include "techniques/interleaved_deferred/shade/of_sub_buffer.glsl"
 #include "techniques/interleaved_deferred/shade/listed.glsl"
 
 uvec3 texel_at(uint place) {
@@ -19,8 +18,7 @@ void main() {
         uvec3 texel = texel_at(listed(i));
         bool exists = is_in_sub_buffer(params.mapping, texel);
         PLACE place = place_of_texel(params.mapping, exists ? texel : uvec3(0u, 0u, texel.z));
-        uvec2 pixel = pixel_of_texel(params.mapping, texel);
-        set_point(i, exists, load_normal(place), load_position(place), pixel, linear_of(params.mapping, texel));
+        set_point_of_sub_buffer(i, exists, place, texel);
     }
     shade_points(subsets[gl_GlobalInvocationID.z]);
     for (uint i = 0u; i < TEXELS; i++) {

@@ -1,9 +1,8 @@
 // Sub-sampling: all lights at the middle pixel of each n x m cell (Segovia 2006, section 5.4, what figures 6 and 7
 // compare with). Pass: src/techniques/interleaved_deferred/shade/subsample.rs.
-// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested
+// variants: POSITION=half|unorm16|depth|float VPL_SHADOW=none|tested VPL_BRDF=lambert|ggx
 #version 460
-#include "passes/gbuffer_read.glsl"
-#include "techniques/interleaved_deferred/shade/irradiance.glsl"
+#include "techniques/interleaved_deferred/shade/of_frame.glsl"
 #include "techniques/interleaved_deferred/shade/listed.glsl"
 
 layout(std430, set = 0, binding = 6) writeonly buffer Irradiance { uvec2 irradiance[]; };
@@ -14,7 +13,7 @@ void main() {
         uint cell = listed(i);
         uvec2 at = uvec2(cell % params.mapping.sub_width_px, cell / params.mapping.sub_width_px);
         uvec2 pixel = middle_of_cell(params.mapping, at);
-        set_point(i, cell < cell_count, normal_words(pixel), position_words(pixel), pixel, cell);
+        set_point_of_frame(i, cell < cell_count, pixel, cell);
     }
     shade_points(subsets[0]);
     for (uint i = 0u; i < TEXELS; i++) {

@@ -1,6 +1,6 @@
 // Block splitting, the first pass of two: each block of the G-buffer into its n x m sub-blocks. Segovia 2006, section 3.3.
 // Pass: src/techniques/interleaved_deferred/split/blocks.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image COPY=pull|push
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image COPY=pull|push COLOR=off|on
 #version 460
 #include "passes/gbuffer.glsl"
 #define WRITES_SURFACE

@@ -1,6 +1,6 @@
 // One-pass split: G-buffer to n x m sub-buffers. Segovia 2006, section 3.2. With STORAGE=layers it is `--split layered`.
 // Pass: src/techniques/interleaved_deferred/split/one_pass.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers COPY=pull|push
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image|layers COPY=pull|push COLOR=off|on
 #version 460
 #include "passes/gbuffer.glsl"
 #define WRITES_SURFACE

@@ -1,7 +1,7 @@
 // Split through workgroup memory: a workgroup loads a block of the G-buffer row by row and writes it out by sub-buffer,
 // so that neither side is scattered (later practice; Segovia 2006, section 3.3 needs two passes for it).
 // Pass: src/techniques/interleaved_deferred/split/tile.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image COLOR=off|on
 #version 460
 #include "passes/gbuffer.glsl"
 #define WRITES_SURFACE
@@ -17,6 +17,9 @@ layout(push_constant) uniform Push { MappingParams mapping; };
 
 shared POSITION_WORDS block_position[BLOCK_TEXELS];
 shared uvec2 block_normal[BLOCK_TEXELS];
+#ifdef HAS_COLOR
+shared uvec2 block_color[BLOCK_TEXELS];
+#endif
 
 // A workgroup a block.
 void main() {
@@ -26,6 +29,9 @@ void main() {
         SurfaceTexel texel = surface_of_frame(mapping, block_first + inside);
         block_position[index] = texel.position;
         block_normal[index] = texel.normal;
+#ifdef HAS_COLOR
+        block_color[index] = texel.color;
+#endif
     }
     barrier();
     uvec2 sub_block = sub_block_of(mapping);
@@ -33,9 +39,15 @@ void main() {
         // Along the rows of a sub-block, sub-block after sub-block.
         uint row = index / sub_block.x;
         uvec3 moved = uvec3(index % sub_block.x, row % sub_block.y, row / sub_block.y);
-        uvec3 texel = moved + uvec3(gl_WorkGroupID.xy * sub_block, 0u);
+        PLACE place = place_of_texel(mapping, moved + uvec3(gl_WorkGroupID.xy * sub_block, 0u));
         uvec2 inside = pixel_of_texel(mapping, moved);
         uint from = inside.y * mapping.block_x + inside.x;
-        store_surface(place_of_texel(mapping, texel), SurfaceTexel(block_position[from], block_normal[from]));
+        SurfaceTexel texel;
+        texel.position = block_position[from];
+        texel.normal = block_normal[from];
+#ifdef HAS_COLOR
+        texel.color = block_color[from];
+#endif
+        store_surface(place, texel);
     }
 }

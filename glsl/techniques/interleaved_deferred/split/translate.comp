@@ -1,6 +1,6 @@
 // Block translation, the second pass of two: whole sub-blocks to their sub-buffers. Segovia 2006, section 3.3.
 // Pass: src/techniques/interleaved_deferred/split/translate.rs.
-// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image COPY=pull|push
+// variants: POSITION=half|unorm16|depth|float STORAGE=buffer|image COPY=pull|push COLOR=off|on
 #version 460
 #include "passes/gbuffer.glsl"
 #define READS_SURFACE

@@ -19,7 +19,7 @@ pub struct ShadeBranch {
 
 impl ShadeBranch {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
+        let shader = variant(COMP_VARIANTS, &choices.shade_axes());
         let constants = [&choices.shading.workgroup_constants()[..], &choices.irradiance_constants()].concat();
         Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants)? })
     }
@@ -36,17 +36,17 @@ impl ShadeBranch {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.surface_bytes(),
+            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts),
             written_bytes: pixels * 8,
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(gbuffer.parts_to(shade.parts, Access::ComputeSample));
             cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
-            bound.extend(gbuffer.resource.bound_surface());
+            bound.extend(gbuffer.resource.bound_parts(shade.parts));
             let groups = self.pipeline.groups([extent.width, extent.height, 1]);
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)
         })

@@ -1,10 +1,10 @@
 //! Each sub-buffer with its own lights, by draws, as in the paper: a viewport on it, or a quad. Segovia 2006, section 4.3.
 //! Shaders: fullscreen.vert or, for quads, drawn.vert; drawn.frag.
-//! reads  split.position, split.normal  images, the lights      writes  shade.irradiance  an image, 8 B a texel
+//! reads  split.position, split.normal, split.color where surfaces are glossy  images, the lights      writes  shade.irradiance  an image, 8 B a texel
 
 use super::super::choices::Choices;
 use super::super::split_method::ShadeBy;
-use super::super::sub_buffers::{Surface, Texels, words_format};
+use super::super::sub_buffers::{Surface, Texels, texel_bytes, words_format};
 use super::ShadeGpu;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
@@ -25,8 +25,8 @@ pub struct ShadeDrawn {
 
 impl ShadeDrawn {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let (position, is_quad) = (choices.shading.position, choices.shade_by == ShadeBy::Quad);
-        let shader = variant(FRAG_VARIANTS, &[position.name(), choices.shade_axis()]);
+        let is_quad = choices.shade_by == ShadeBy::Quad;
+        let shader = variant(FRAG_VARIANTS, &choices.shade_axes());
         let formats = [words_format(8)];
         let plain = fullscreen::description(shader, &formats);
         let description = GraphicsDescription {
@@ -35,7 +35,7 @@ impl ShadeDrawn {
             ..plain
         };
         let pipeline = GraphicsPipeline::new(gpu, &description)?;
-        Ok(Self { pipeline, is_quad, texel_bytes: 8 + position.bytes() })
+        Ok(Self { pipeline, is_quad, texel_bytes: texel_bytes(choices.shaded, choices.shading.position) })
     }
 
     pub fn record(
@@ -51,11 +51,11 @@ impl ShadeDrawn {
         let texels = mapping.texel_count();
         let traffic = Traffic { read_bytes: texels * self.texel_bytes, written_bytes: texels * 8, invocations: None };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(split.to(Access::FragmentSample));
+            cmd.barriers(split.to(shade.parts, Access::FragmentSample));
             cmd.barriers(shade.hidden_to(Access::GraphicsRead));
             cmd.barriers([irradiance.discard(Access::ColorWrite)]);
             let mut bound = shade.bound(frame, direct);
-            bound.extend(split.resource.source());
+            bound.extend(split.resource.source(shade.parts));
             // Every texel is drawn: a clear spares the load.
             let target = ColorTarget::new(irradiance.attachment(), Some(Default::default()));
             cmd.begin_rendering(mapping.padded(), &[target], None);

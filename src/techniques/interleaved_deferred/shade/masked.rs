@@ -34,7 +34,7 @@ pub struct ShadeMasked {
 
 impl ShadeMasked {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, kind: MaskKind) -> Result<Self> {
-        let shader = variant(FRAG_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
+        let shader = variant(FRAG_VARIANTS, &choices.shade_axes());
         let formats = [drawn_irradiance::FORMAT];
         let (compare, stencil) = match kind {
             MaskKind::Stencil => (vk::CompareOp::ALWAYS, Some(StencilUse::RequireEqual)),
@@ -65,16 +65,16 @@ impl ShadeMasked {
         let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.resource.kind.tested_bytes();
         let traffic = Traffic {
             // Every draw tests every pixel; each pixel is shaded once.
-            read_bytes: pixels * gbuffer.resource.surface_bytes() + tested_bytes + self.drawn.bytes(),
+            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts) + tested_bytes + self.drawn.bytes(),
             written_bytes: pixels * 8 + self.drawn.bytes(),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to(Access::FragmentSample));
+            cmd.barriers(gbuffer.parts_to(shade.parts, Access::FragmentSample));
             cmd.barriers([mask.to(Access::DepthTest)]);
             cmd.barriers(shade.hidden_to(Access::GraphicsRead));
             let mut bound = shade.bound(frame, direct);
-            bound.extend(gbuffer.resource.bound_surface());
+            bound.extend(gbuffer.resource.bound_parts(shade.parts));
             let depth = Some((&mask.resource.image, None, Access::DepthTest));
             self.drawn.record(cmd, mapping, depth, irradiance, |cmd| {
                 cmd.bind_graphics(&self.pipeline, bytemuck::bytes_of(&shade.params), &bound)?;

@@ -17,7 +17,7 @@ use crate::gpu::shader::Shader;
 use crate::gpu::shader::structs::{LightBlock, MappingParams, ShadeParams, SubsetBlock, VplBlock};
 use crate::gpu::{Access, Barrier, Bound, Buffer, Gpu, upload};
 use crate::passes::direct::DirectGpu;
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
@@ -49,10 +49,18 @@ pub struct ShadeGpu {
     pub hidden: Option<Buffer>,
     /// Parameters of shading that every split has.
     pub params: ShadeParams,
+    /// What shading reads of a surface.
+    pub parts: SurfaceParts,
 }
 
 impl ShadeGpu {
-    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, lights: &SubsetLights, params: ShadeParams) -> Result<Self> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        resources: &mut Resources,
+        lights: &SubsetLights,
+        params: ShadeParams,
+        parts: SurfaceParts,
+    ) -> Result<Self> {
         let mut filled = |what: &str, bytes: &[u8]| {
             let buffer = resources.buffer(&format!("{NAME}.{what}"));
             // Compute and fragment shaders shade; blended surfaces read virtual lights too.
@@ -66,6 +74,7 @@ impl ShadeGpu {
             subsets: filled("subsets", bytemuck::cast_slice(&lights.subsets))?,
             hidden: (words_a_point > 0).then(|| resources.buffer(HIDDEN)),
             params,
+            parts,
         })
     }
 

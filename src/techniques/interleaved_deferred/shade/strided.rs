@@ -31,7 +31,7 @@ pub struct ShadeStrided {
 
 impl ShadeStrided {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, dispatches: Dispatches) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
+        let shader = variant(COMP_VARIANTS, &choices.shade_axes());
         Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)?, dispatches })
     }
 
@@ -47,17 +47,17 @@ impl ShadeStrided {
         let mapping = shade.mapping();
         let pixels = gbuffer.resource.extent().pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.surface_bytes(),
+            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts),
             written_bytes: pixels * 8,
             invocations: Some(self.listed.invocations(mapping.subset_count())),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(gbuffer.parts_to(shade.parts, Access::ComputeSample));
             cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
-            bound.extend(gbuffer.resource.bound_surface());
+            bound.extend(gbuffer.resource.bound_parts(shade.parts));
             let mut dispatch = |subset_first: u32, subset_count: u32| {
                 let params = ShadeParams { subset_first, ..shade.params };
                 // No barrier between subsets: they write different pixels.

@@ -1,8 +1,8 @@
 //! Each sub-buffer with its own lights: neighbouring threads walk one list. Shader: sub_buffers.comp.
-//! reads  split.position, split.normal, the lights      writes  shade.irradiance  sub-buffers, 8 B a texel
+//! reads  split.position, split.normal, split.color where surfaces are glossy, the lights      writes  shade.irradiance  sub-buffers, 8 B a texel
 
 use super::super::choices::Choices;
-use super::super::sub_buffers::{Stage, Storage, Surface, Texels};
+use super::super::sub_buffers::{Stage, Storage, Surface, Texels, texel_bytes};
 use super::{ShadeGpu, TexelListPipeline};
 use crate::error::Result;
 use crate::gpu::shader::techniques::interleaved_deferred::shade::sub_buffers::COMP_VARIANTS;
@@ -20,10 +20,10 @@ pub struct ShadeSubBuffers {
 
 impl ShadeSubBuffers {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, storage: Storage) -> Result<Self> {
-        let position = choices.shading.position;
-        let shader = variant(COMP_VARIANTS, &[position.name(), storage.name(), choices.shade_axis()]);
+        let [position, shadow, brdf] = choices.shade_axes();
+        let shader = variant(COMP_VARIANTS, &[position, storage.name(), shadow, brdf]);
         let listed = TexelListPipeline::new(gpu, choices, shader)?;
-        Ok(Self { listed, storage, texel_bytes: 8 + position.bytes() })
+        Ok(Self { listed, storage, texel_bytes: texel_bytes(choices.shaded, choices.shading.position) })
     }
 
     pub fn record(
@@ -43,11 +43,11 @@ impl ShadeSubBuffers {
             invocations: Some(self.listed.invocations(mapping.subset_count())),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(split.to(self.storage.read(Stage::Compute)));
+            cmd.barriers(split.to(shade.parts, self.storage.read(Stage::Compute)));
             cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
-            bound.extend(split.resource.source());
+            bound.extend(split.resource.source(shade.parts));
             bound.push(("target_irradiance", irradiance.target()));
             // Rows do not matter here: a workgroup takes whatever texels of its sub-buffer come next.
             let groups = [self.listed.workgroup_count, 1, mapping.subset_count()];

@@ -18,7 +18,7 @@ pub struct ShadeSubsample {
 
 impl ShadeSubsample {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), choices.shade_axis()]);
+        let shader = variant(COMP_VARIANTS, &choices.shade_axes());
         Ok(Self { listed: TexelListPipeline::new(gpu, choices, shader)? })
     }
 
@@ -34,17 +34,17 @@ impl ShadeSubsample {
         let mapping = shade.mapping();
         let cells = mapping.sub_texel_count();
         let traffic = Traffic {
-            read_bytes: cells * gbuffer.resource.surface_bytes(),
+            read_bytes: cells * gbuffer.resource.parts_bytes(shade.parts),
             written_bytes: cells * 8,
             invocations: Some(self.listed.invocations(1)),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(gbuffer.parts_to(shade.parts, Access::ComputeSample));
             cmd.barriers(shade.hidden_to(Access::ComputeRead));
             cmd.barriers([irradiance.discard(Access::ComputeWrite)]);
             let mut bound = shade.bound(frame, direct);
             bound.push(("Irradiance", Bound::Buffer(irradiance)));
-            bound.extend(gbuffer.resource.bound_surface());
+            bound.extend(gbuffer.resource.bound_parts(shade.parts));
             let groups = [self.listed.workgroup_count, 1, 1];
             cmd.dispatch(&self.listed.pipeline, bytemuck::bytes_of(&shade.params), &bound, groups)
         })

@@ -1,6 +1,6 @@
 //! Block splitting, the first pass of two: Segovia 2006, section 3.3. Shader: blocks.comp.
-//! reads   gbuffer.position, gbuffer.normal
-//! writes  split.blocks.position, split.blocks.normal  as split.position and split.normal, in the block layout
+//! reads   gbuffer.position, gbuffer.normal, gbuffer.color where it is moved
+//! writes  split.blocks.position, .normal, .color  as those of split, in the block layout
 
 use super::super::choices::Choices;
 use super::super::split_method::Copies;
@@ -11,20 +11,23 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::blocks::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::techniques::interleaved_deferred::split::from_frame::FromFrame;
 use std::sync::Arc;
 
 pub struct SplitBlocks {
     pipeline: ComputePipeline,
     copies: Copies,
+    parts: SurfaceParts,
 }
 
 impl SplitBlocks {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
-        let axes = [choices.shading.position.name(), copies.storage.name(), copies.form.name()];
+        let axes =
+            [choices.shading.position.name(), copies.storage.name(), copies.form.name(), choices.moved.color_name()];
         let shader = variant(COMP_VARIANTS, &axes);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.shading.workgroup_constants())?, copies })
+        let pipeline = ComputePipeline::new(gpu, shader, &choices.split_constants())?;
+        Ok(Self { pipeline, copies, parts: choices.moved })
     }
 
     pub fn record(
@@ -35,6 +38,6 @@ impl SplitBlocks {
         blocks: &Surface,
     ) -> Result<()> {
         let threads = self.copies.padded_threads(mapping);
-        FromFrame::over("split.blocks", &self.pipeline, threads).record(cmd, mapping, gbuffer, blocks)
+        FromFrame::over(self.parts, "split.blocks", &self.pipeline, threads).record(cmd, mapping, gbuffer, blocks)
     }
 }

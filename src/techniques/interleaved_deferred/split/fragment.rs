@@ -1,12 +1,13 @@
 //! Split by fragment programs and look-up textures, in one pass or in two: Segovia 2006, sections 3.2, 3.3 and 4.2.
 //! Shaders: fullscreen.vert, fragment.frag.
-//! reads   gbuffer.position, gbuffer.normal, split.lookup (one pass), split.lookup_blocks and split.lookup_translate (two)
-//! writes  split.position, split.normal  images; between two passes split.blocks.position, split.blocks.normal
+//! reads   gbuffer.position, gbuffer.normal, gbuffer.color where it is moved, split.lookup (one pass), split.lookup_blocks and
+//!         split.lookup_translate (two)
+//! writes  split.position, split.normal, split.color  images; between two passes split.blocks.position, .normal, .color
 
 use super::super::choices::Choices;
 use super::super::lookup::{self, Lookup};
 use super::super::split_method::Copier;
-use super::super::sub_buffers::{Surface, words_format};
+use super::super::sub_buffers::{Surface, texel_bytes, words_format};
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MappingParams;
@@ -14,9 +15,8 @@ use crate::gpu::shader::techniques::interleaved_deferred::split::fragment::FRAG_
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::plan::{Plan, Resources};
-use crate::settings::PositionStorage;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ pub fn plan(plan: &mut Plan, mapping: &MappingParams, by: Copier) {
 struct Source<'a> {
     barriers: Vec<Barrier>,
     bound: Vec<(&'static str, Bound<'a>)>,
-    /// Texels that are read, and the bytes of position and normal of each.
+    /// Texels that are read, and the bytes of each.
     texels: u64,
     texel_bytes: u64,
 }
@@ -43,14 +43,23 @@ struct Source<'a> {
 struct Program {
     pipeline: GraphicsPipeline,
     lookup: Lookup,
+    parts: SurfaceParts,
+    texel_bytes: u64,
 }
 
 impl Program {
-    fn new(gpu: &Arc<Gpu>, position: PositionStorage, source: &str, lookup: Lookup) -> Result<Self> {
-        let formats = [words_format(position.bytes()), words_format(8)];
-        let shader = variant(FRAG_VARIANTS, &[position.name(), source]);
-        let description: GraphicsDescription<'_> = fullscreen::description(shader, &formats);
-        Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)?, lookup })
+    /// `reads_frame`: and not the block layout.
+    fn new(gpu: &Arc<Gpu>, choices: &Choices, reads_frame: bool, lookup: Lookup) -> Result<Self> {
+        let (parts, position) = (choices.moved, choices.shading.position);
+        let formats = [words_format(position.bytes()), words_format(8), words_format(8)];
+        let source = if reads_frame { "frame" } else { "blocks" };
+        let shader = variant(FRAG_VARIANTS, &[position.name(), source, parts.color_name()]);
+        let constants: Vec<_> = parts.constant().into_iter().filter(|_| reads_frame).collect();
+        let count = if parts.has_color() { 3 } else { 2 };
+        let description =
+            GraphicsDescription { constants: &constants, ..fullscreen::description(shader, &formats[..count]) };
+        let pipeline = GraphicsPipeline::new(gpu, &description)?;
+        Ok(Self { pipeline, lookup, parts, texel_bytes: texel_bytes(parts, position) })
     }
 
     fn record(
@@ -63,7 +72,7 @@ impl Program {
     ) -> Result<()> {
         let traffic = Traffic {
             read_bytes: source.texels * source.texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
-            written_bytes: mapping.texel_count() * source.texel_bytes,
+            written_bytes: mapping.texel_count() * self.texel_bytes,
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
@@ -71,7 +80,7 @@ impl Program {
             cmd.barriers(target.discard(Access::ColorWrite));
             // Every texel is drawn: a clear spares the load.
             let clear = Some(Default::default());
-            let colors = [&target.position, &target.normal].map(|part| ColorTarget::new(part.attachment(), clear));
+            let colors: Vec<_> = target.all().map(|part| ColorTarget::new(part.attachment(), clear)).collect();
             cmd.begin_rendering(mapping.padded(), &colors, None);
             let mut bound = source.bound;
             bound.push(self.lookup.bound());
@@ -91,11 +100,11 @@ impl Program {
         target: &Surface,
     ) -> Result<()> {
         let source = Source {
-            barriers: gbuffer.surface_to(Access::FragmentSample),
-            bound: gbuffer.resource.bound_surface(),
+            barriers: gbuffer.parts_to(self.parts, Access::FragmentSample),
+            bound: gbuffer.resource.bound_parts(self.parts),
             // Padding is written, and read nowhere.
             texels: mapping.extent().pixel_count(),
-            texel_bytes: gbuffer.resource.surface_bytes(),
+            texel_bytes: gbuffer.resource.parts_bytes(self.parts),
         };
         self.record(cmd, pass, mapping, source, target)
     }
@@ -106,11 +115,11 @@ pub struct FragmentSplit(Program);
 
 impl FragmentSplit {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices) -> Result<Self> {
-        let Choices { mapping, shading, .. } = choices;
+        let mapping = &choices.mapping;
         let pixel_at = |at| mapping.pixel_of_texel(mapping.texel_of_tiled(at));
         let source_of = |at| Some(pixel_at(at)).filter(|pixel| mapping.is_in_frame(*pixel));
         let lookup = Lookup::new(gpu, resources, "split.lookup", source_of)?;
-        Ok(Self(Program::new(gpu, shading.position, "frame", lookup)?))
+        Ok(Self(Program::new(gpu, choices, true, lookup)?))
     }
 
     pub fn record(
@@ -133,15 +142,15 @@ pub struct FragmentSplitBlocks {
 
 impl FragmentSplitBlocks {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, between: Surface) -> Result<Self> {
-        let Choices { mapping, shading, .. } = choices;
+        let mapping = &choices.mapping;
         let pixel_of = |at| Some(mapping.pixel_of_block_texel(at)).filter(|pixel| mapping.is_in_frame(*pixel));
         let blocks = Lookup::new(gpu, resources, "split.lookup_blocks", pixel_of)?;
         let block_texel_of = |at| Some(mapping.block_texel_of_texel(mapping.texel_of_tiled(at)));
         let translate = Lookup::new(gpu, resources, "split.lookup_translate", block_texel_of)?;
         Ok(Self {
-            blocks: Program::new(gpu, shading.position, "frame", blocks)?,
+            blocks: Program::new(gpu, choices, true, blocks)?,
             between,
-            translate: Program::new(gpu, shading.position, "blocks", translate)?,
+            translate: Program::new(gpu, choices, false, translate)?,
         })
     }
 
@@ -152,13 +161,12 @@ impl FragmentSplitBlocks {
         gbuffer: Edge<'_, GBuffer>,
         split: &Surface,
     ) -> Result<()> {
-        let texel_bytes = gbuffer.resource.surface_bytes();
         self.blocks.record_from_frame(cmd, "split.blocks", mapping, gbuffer, &self.between)?;
         let source = Source {
-            barriers: self.between.from(Access::ColorWrite).to(Access::FragmentSample).to_vec(),
-            bound: self.between.source().to_vec(),
+            barriers: self.between.from(Access::ColorWrite).to(self.translate.parts, Access::FragmentSample),
+            bound: self.between.source(self.translate.parts).collect(),
             texels: mapping.texel_count(),
-            texel_bytes,
+            texel_bytes: self.translate.texel_bytes,
         };
         self.translate.record(cmd, "split.translate", mapping, source, split)
     }

@@ -4,18 +4,20 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Commands, Edge, Traffic};
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::techniques::interleaved_deferred::resources::NAME;
-use crate::techniques::interleaved_deferred::sub_buffers::Surface;
+use crate::techniques::interleaved_deferred::sub_buffers::{Surface, texel_bytes};
 
-/// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it.
-pub fn copied(mapping: &MappingParams, texel_bytes: u64, invocations: u64) -> Traffic {
-    let bytes = mapping.texel_count() * texel_bytes;
-    Traffic { read_bytes: bytes, written_bytes: bytes, invocations: Some(invocations) }
+/// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it. `texel_bytes`: read and
+/// written.
+pub fn copied(mapping: &MappingParams, texel_bytes: [u64; 2], invocations: u64) -> Traffic {
+    let [read_bytes, written_bytes] = texel_bytes.map(|bytes| mapping.texel_count() * bytes);
+    Traffic { read_bytes, written_bytes, invocations: Some(invocations) }
 }
 
 /// A compute shader from the G-buffer, dispatched.
 pub struct FromFrame<'a> {
+    pub(super) parts: SurfaceParts,
     /// Without the technique.
     pub(super) pass: &'a str,
     pub(super) pipeline: &'a ComputePipeline,
@@ -26,8 +28,8 @@ pub struct FromFrame<'a> {
 
 impl<'a> FromFrame<'a> {
     /// One thread for each place of `threads`.
-    pub(super) fn over(pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
-        Self { pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
+    pub(super) fn over(parts: SurfaceParts, pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
+        Self { parts, pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
     }
 
     pub(super) fn record(
@@ -37,11 +39,13 @@ impl<'a> FromFrame<'a> {
         gbuffer: Edge<'_, GBuffer>,
         target: &Surface,
     ) -> Result<()> {
-        let traffic = copied(mapping, gbuffer.resource.surface_bytes(), self.invocations);
+        let (read, parts) = (gbuffer.resource, self.parts);
+        let texel_bytes = [read.parts_bytes(parts), texel_bytes(parts, read.position_storage)];
+        let traffic = copied(mapping, texel_bytes, self.invocations);
         cmd.pass(&format!("{NAME}.{}", self.pass), traffic, |cmd| {
-            cmd.barriers(gbuffer.surface_to_sampled());
+            cmd.barriers(gbuffer.parts_to(parts, Access::ComputeSample));
             cmd.barriers(target.discard(Access::ComputeWrite));
-            let mut bound = gbuffer.resource.bound_surface();
+            let mut bound = read.bound_parts(parts);
             bound.extend(target.target());
             cmd.dispatch(self.pipeline, bytemuck::bytes_of(mapping), &bound, self.groups)
         })

@@ -1,5 +1,5 @@
-//! G-buffer splitting (BS): position and normal of the frame's pixels into n x m sub-buffers. Segovia 2006, sections 3.2,
-//! 3.3 and 4.2.
+//! G-buffer splitting (BS): position, normal and, as in the paper, colour of the frame's pixels into n x m sub-buffers. Segovia
+//! 2006, sections 3.2, 3.3 and 4.2.
 
 pub mod blocks;
 pub mod fragment;
@@ -10,7 +10,7 @@ pub mod translate;
 
 use super::choices::Choices;
 use super::split_method::{Copier, Copies};
-use super::sub_buffers::Surface;
+use super::sub_buffers::{Moved, Surface};
 use crate::error::Result;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Commands, Edge, Gpu};
@@ -36,18 +36,19 @@ pub enum Split {
 
 /// Plans the sub-buffers, what lies between two passes, and the passes.
 pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies) {
-    let Choices { mapping, shading, .. } = choices;
-    let (storage, stage, position_bytes) = (copies.storage, copies.stage(), shading.position.bytes());
-    let (written, read) = (storage.written(stage), storage.read(stage));
-    Surface::plan(plan, "split", mapping, storage, position_bytes, stage);
+    let Choices { mapping, shading, moved: parts, .. } = choices;
+    let (parts, position, stage) = (*parts, shading.position, copies.stage());
+    let moved = Moved { parts, storage: copies.storage, position, writer: stage };
+    let (written, read) = (copies.storage.written(stage), copies.storage.read(stage));
+    Surface::plan(plan, "split", mapping, &moved);
     fragment::plan(plan, mapping, copies.by);
-    let frame = gbuffer::surface_as(NAME, shading.position, stage.samples());
-    let split = Surface::touches("split", written);
+    let frame = gbuffer::parts_as(NAME, position, parts, stage.samples());
+    let split = Surface::touches("split", parts, written);
     if copies.is_two_pass() {
-        Surface::plan(plan, "split.blocks", mapping, storage, position_bytes, stage);
-        let between = |access| Surface::touches("split.blocks", access);
+        Surface::plan(plan, "split.blocks", mapping, &moved);
+        let between = |access| Surface::touches("split.blocks", parts, access);
         plan.pass(format!("{NAME}.split.blocks"), frame.into_iter().chain(between(written)));
-        plan.pass(format!("{NAME}.split.translate"), between(read).into_iter().chain(split));
+        plan.pass(format!("{NAME}.split.translate"), between(read).chain(split));
     } else {
         plan.pass(format!("{NAME}.split"), frame.into_iter().chain(split));
     }
@@ -55,7 +56,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies) {
 
 impl Split {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, copies: Copies) -> Result<Self> {
-        let mut between = || Surface::new(gpu, resources, "split.blocks", copies.storage);
+        let mut between = || Surface::new(gpu, resources, "split.blocks", choices.moved, copies.storage);
         Ok(match copies.by {
             Copier::OnePass => Self::OnePass(SplitOnePass::new(gpu, choices, copies)?),
             Copier::TwoPass => Self::TwoPass {
@@ -80,12 +81,11 @@ impl Split {
         gbuffer: Edge<'_, GBuffer>,
         split: &Surface,
     ) -> Result<()> {
-        let texel_bytes = gbuffer.resource.surface_bytes();
         match self {
             Self::OnePass(copy) => copy.record(cmd, mapping, gbuffer, split),
             Self::TwoPass { blocks, between, translate } => {
                 blocks.record(cmd, mapping, gbuffer, between)?;
-                translate.record(cmd, mapping, texel_bytes, between.from(Access::ComputeWrite), split)
+                translate.record(cmd, mapping, between.from(Access::ComputeWrite), split)
             }
             Self::Tile(copy) => copy.record(cmd, mapping, gbuffer, split),
             Self::OneFragmentPass(copy) => copy.record(cmd, mapping, gbuffer, split),

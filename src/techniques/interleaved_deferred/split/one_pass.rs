@@ -1,6 +1,6 @@
 //! One-pass split: Segovia 2006, section 3.2. Shader: one_pass.comp. With layers as storage it is `--split layered`.
-//! reads   gbuffer.position, gbuffer.normal
-//! writes  split.position  sub-buffers, 4, 8 or 16 B a texel      split.normal  sub-buffers, 8 B a texel
+//! reads   gbuffer.position, gbuffer.normal, gbuffer.color where it is moved
+//! writes  split.position  sub-buffers, 4, 8 or 16 B a texel      split.normal, split.color  sub-buffers, 8 B a texel each
 
 use super::super::choices::Choices;
 use super::super::split_method::{Copies, Form};
@@ -11,20 +11,23 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::one_pass::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::techniques::interleaved_deferred::split::from_frame::FromFrame;
 use std::sync::Arc;
 
 pub struct SplitOnePass {
     pipeline: ComputePipeline,
     copies: Copies,
+    parts: SurfaceParts,
 }
 
 impl SplitOnePass {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
-        let axes = [choices.shading.position.name(), copies.storage.name(), copies.form.name()];
+        let axes =
+            [choices.shading.position.name(), copies.storage.name(), copies.form.name(), choices.moved.color_name()];
         let shader = variant(COMP_VARIANTS, &axes);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.shading.workgroup_constants())?, copies })
+        let pipeline = ComputePipeline::new(gpu, shader, &choices.split_constants())?;
+        Ok(Self { pipeline, copies, parts: choices.moved })
     }
 
     pub fn record(
@@ -42,6 +45,6 @@ impl SplitOnePass {
             }
             Form::Push => self.copies.padded_threads(mapping),
         };
-        FromFrame::over("split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
+        FromFrame::over(self.parts, "split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
     }
 }

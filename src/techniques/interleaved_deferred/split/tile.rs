@@ -1,6 +1,6 @@
 //! Split through workgroup memory, a workgroup a block (later practice). Shader: tile.comp.
-//! reads   gbuffer.position, gbuffer.normal
-//! writes  split.position, split.normal      holds  a block of both in workgroup memory
+//! reads   gbuffer.position, gbuffer.normal, gbuffer.color where it is moved
+//! writes  split.position, split.normal, split.color      holds  a block of them in workgroup memory
 
 use super::super::choices::Choices;
 use super::super::split_method::Copies;
@@ -11,12 +11,13 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::tile::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::GBuffer;
+use crate::passes::gbuffer::{GBuffer, SurfaceParts};
 use crate::techniques::interleaved_deferred::split::from_frame::{FromFrame, product};
 use std::sync::Arc;
 
 pub struct SplitTile {
     pipeline: ComputePipeline,
+    parts: SurfaceParts,
 }
 
 /// Constants of tile.comp, there and back.
@@ -28,8 +29,10 @@ pub fn constants(choices: &Choices) -> Vec<(&'static str, u32)> {
 
 impl SplitTile {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
-        let shader = variant(COMP_VARIANTS, &[choices.shading.position.name(), copies.storage.name()]);
-        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &constants(choices))? })
+        let parts = choices.moved;
+        let axes = [choices.shading.position.name(), copies.storage.name(), parts.color_name()];
+        let constants: Vec<_> = constants(choices).into_iter().chain(parts.constant()).collect();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &axes), &constants)?, parts })
     }
 
     pub fn record(
@@ -41,7 +44,8 @@ impl SplitTile {
     ) -> Result<()> {
         let [x, y] = mapping.block_counts();
         let invocations = product([x, y, self.pipeline.workgroup.iter().product()]);
-        let copy = FromFrame { pass: "split", pipeline: &self.pipeline, groups: [x, y, 1], invocations };
+        let copy =
+            FromFrame { parts: self.parts, pass: "split", pipeline: &self.pipeline, groups: [x, y, 1], invocations };
         copy.record(cmd, mapping, gbuffer, split)
     }
 }
