@@ -1,6 +1,6 @@
 //! Numbers that stand in its text alone.
 
-use super::figures::{NO_BLOCKS, best, split_by_block};
+use super::figures::{NO_BLOCKS, SUB_BUFFERS, best, split_by_block};
 use super::tables::pass_ms;
 use crate::bench::row::BenchRow;
 use crate::papers::figures;
@@ -62,7 +62,7 @@ fn section_5_3(effort: Effort) -> Recipe {
     let mut recipe = Recipe::default();
     recipe.cell(0, "table 3, 6800 GT (computed)", "gather", Source::Computed(faster("6800 GT")));
     recipe.cell(0, "table 3, 7800 GT (computed)", "gather", Source::Computed(faster("7800 GT")));
-    let words = format!("{} --vpls 64 --pattern 4x4 --split two-pass", effort.size(1024, 1024));
+    let words = format!("{} --vpls 64 --pattern 4x4 --split two-pass {SUB_BUFFERS}", effort.size(1024, 1024));
     recipe.step(Step::bench("frame", "frame", "hall:triangles=8000", 7, &words));
     recipe.cell(
         0,
@@ -167,7 +167,7 @@ fn section_6_2(effort: Effort) -> Recipe {
         recipe.cell(1, format!("{gpu}, table 3 (computed)"), "overhead", Source::Computed(overhead_passes(gpu)));
     }
     let words = format!(
-        "{} --pattern 4x4 --kernel 5 --direct none --fair --vpls 256 --sweep split=none,two-pass,one-pass",
+        "{} --pattern 4x4 --kernel 5 --direct none {SUB_BUFFERS} --fair --vpls 256 --sweep split=none,two-pass,one-pass",
         effort.size(1024, 1024)
     );
     recipe.step(Step::bench("overhead", "frame", "hall:triangles=8000", 7, &words));
@@ -180,7 +180,8 @@ fn section_6_2(effort: Effort) -> Recipe {
             let step = format!("{pattern}-{width}x{height}");
             let counts = lights.map(|count| count.to_string()).join(",");
             let words = format!(
-                "{} --pattern {pattern} --kernel 5 --direct none --fair --sweep vpls={counts} --sweep split=none,one-pass \
+                "{} --pattern {pattern} --kernel 5 --direct none {SUB_BUFFERS} --fair --sweep vpls={counts} \
+                 --sweep split=none,one-pass \
                  --baseline split=none",
                 effort.size(width, height)
             );

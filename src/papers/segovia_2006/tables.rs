@@ -1,5 +1,6 @@
 //! Its five tables.
 
+use super::figures::SUB_BUFFERS;
 use crate::papers::figures;
 use crate::papers::item::{Item, Published, Scale, Verdict};
 use crate::papers::recipe::{Effort, Recipe, Source, Step};
@@ -127,7 +128,7 @@ pub const TABLE_3: Item = Item {
 fn table_3(effort: Effort) -> Recipe {
     let mut recipe = Recipe::default();
     let words = format!(
-        "{} --vpls {} --pattern 4x4 --kernel 5 --direct none --split two-pass --fair --sweep vpl-shadow=none,map",
+        "{} --vpls {} --pattern 4x4 --kernel 5 --direct none --split two-pass {SUB_BUFFERS} --fair --sweep vpl-shadow=none,map",
         effort.size(1024, 1024),
         effort.pick(256, 64),
     );
@@ -200,7 +201,7 @@ fn table_4(effort: Effort) -> Recipe {
         for (suffix, more) in [("", "--fair"), (", many texels a thread", "")] {
             let step = format!("{triangles}{}", if more.is_empty() { "-many" } else { "" });
             let words = format!(
-                "{} --vpls 480 --pattern 8x6 --kernel 5 --direct interleaved --direct-shadow none {more} \
+                "{} --vpls 480 --pattern 8x6 --kernel 5 --direct interleaved --direct-shadow none {SUB_BUFFERS} {more} \
                  --sweep split=none,one-pass",
                 effort.size(1024, 768)
             );
@@ -263,7 +264,7 @@ fn table_5(effort: Effort) -> Recipe {
         ("cruiser, 1,000,000 triangles", "cruiser", "hall:triangles=1000000"),
     ] {
         let words = format!(
-            "{} --vpls {} --pattern 2x2 --direct none --vpl-shadow map --fair --sweep split=none,one-pass",
+            "{} --vpls {} --pattern 2x2 --direct none --vpl-shadow map {SUB_BUFFERS} --fair --sweep split=none,one-pass",
             effort.size(1280, 1024),
             effort.pick(64, 16),
         );
@@ -278,7 +279,7 @@ fn table_5(effort: Effort) -> Recipe {
         );
         let converged = format!("{step}-converged");
         let words = format!(
-            "{} --vpls 16 --pattern 2x2 --direct none --vpl-shadow map --fair --until-error {} --sweep split=none,one-pass",
+            "{} --vpls 16 --pattern 2x2 --direct none --vpl-shadow map {SUB_BUFFERS} --fair --until-error {} --sweep split=none,one-pass",
             effort.size(1280, 1024),
             effort.pick("0.06", "0.12"),
         );
