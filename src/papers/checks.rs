@@ -92,15 +92,18 @@ fn every_number_and_picture_of_a_recipe_is_left_by_one_of_its_steps() {
             check_source(&name, &cell.source, &recipe.steps);
         }
         for picture in &recipe.pictures {
+            // A close-up is left by what leaves the picture that it is of.
+            let of = recipe.close_ups.iter().find(|close_up| close_up.file() == picture.file);
+            let file = of.map_or(&picture.file, |close_up| &close_up.of);
             let is_left = |step: &Step| match step.verb {
                 Verb::Render { extension } => {
-                    let rest = picture.file.strip_prefix(&format!("{}.", step.name));
+                    let rest = file.strip_prefix(&format!("{}.", step.name));
                     let stage = rest.and_then(|rest| rest.strip_suffix(".png"));
                     let named = |stage: &str| step.words.iter().any(|word| word.split(',').any(|one| one == stage));
                     extension == "png" && (rest == Some("png") || stage.is_some_and(named))
                 }
                 Verb::Pattern { .. } => {
-                    [format!("{}.png", step.name), format!("{}.spectrum.png", step.name)].contains(&picture.file)
+                    [format!("{}.png", step.name), format!("{}.spectrum.png", step.name)].contains(file)
                 }
                 _ => false,
             };

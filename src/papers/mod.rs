@@ -2,6 +2,7 @@
 //! commands that make it here.
 
 pub mod clarberg_2014;
+mod close_up;
 pub mod columns;
 pub mod digits;
 pub mod dubla_2009;

@@ -38,6 +38,8 @@ pub struct Recipe {
     pub steps: Vec<Step>,
     pub cells: Vec<Cell>,
     pub pictures: Vec<Picture>,
+    /// Made of pictures of the steps, when these are done.
+    pub close_ups: Vec<CloseUp>,
 }
 
 /// One command of this program.
@@ -150,6 +152,24 @@ pub struct Picture {
     pub file: String,
 }
 
+/// A part of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CloseUp {
+    /// Name of a PNG among the files of the steps.
+    pub of: String,
+    /// Its middle, in parts of the picture's sides from the upper left corner.
+    pub middle: [f32; 2],
+    /// Its sides, in parts of the picture's.
+    pub part: f32,
+}
+
+impl CloseUp {
+    /// Name of its own file.
+    pub fn file(&self) -> String {
+        format!("{}.close-up.png", self.of.strip_suffix(".png").unwrap_or(&self.of))
+    }
+}
+
 /// Words, as a shell would part them.
 fn words(text: &str) -> Vec<String> {
     text.split_whitespace().map(str::to_owned).collect()
@@ -204,6 +224,13 @@ impl Recipe {
         for metric in metrics {
             self.cell(table, row, *metric, Source::metric(&step, metric));
         }
+    }
+
+    /// Part of a picture to look at: `part` of its sides, around `middle` (`CloseUp`).
+    pub fn close_up(&mut self, title: impl Into<String>, of: impl Into<String>, middle: [f32; 2], part: f32) {
+        let close_up = CloseUp { of: of.into(), middle, part };
+        self.picture(title, close_up.file());
+        self.close_ups.push(close_up);
     }
 
     pub fn picture(&mut self, title: impl Into<String>, file: impl Into<String>) {

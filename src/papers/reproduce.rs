@@ -5,7 +5,7 @@ use super::item::{Item, Paper};
 use super::outcome::{Outcome, outcome};
 use super::recipe::{Effort, Recipe};
 use super::request::Request;
-use super::{step_run, text};
+use super::{close_up, step_run, text};
 use crate::error::{Error, Result};
 use crate::progress::say;
 use crate::whole_file::write_whole;
@@ -47,6 +47,7 @@ pub fn reproduce(paper: &Paper, item: &Item, request: &Request) -> Result<Outcom
         found.latest = found.latest.max(written);
         found.steps.insert(step.name.clone(), left);
     }
+    recipe.close_ups.iter().try_for_each(|close_up| close_up::write(close_up, &request.folder))?;
     let outcome = outcome(paper, item, &recipe, &found, request, COMMIT);
     let document = serde_json::to_string_pretty(&outcome).expect("its keys are texts");
     write_whole(&request.folder.join("result.json"), |out| writeln!(out, "{document}"))?;

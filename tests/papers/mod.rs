@@ -131,9 +131,13 @@ fn pictures_are_rendered_compared_and_named() {
     let folder = "out/segovia-2006/figure-6/cornell";
     let result = document(&program, &format!("{folder}/result.json"));
     let pictures = result["pictures"].as_array().unwrap();
-    assert_eq!(pictures.len(), 4);
-    for picture in pictures {
-        assert!(program.folder.path().join(folder).join(picture["file"].as_str().unwrap()).is_file(), "{picture}");
+    // Four, and a close-up of each, its pixels enlarged.
+    assert_eq!(pictures.len(), 8);
+    for (index, picture) in pictures.iter().enumerate() {
+        let file = program.folder.path().join(folder).join(picture["file"].as_str().unwrap());
+        let shown = image::open(file).unwrap().into_rgba8();
+        assert_eq!(shown.height() > 32, index >= 4, "{picture}");
+        assert_eq!(shown.get_pixel(0, 0), shown.get_pixel(u32::from(index >= 4), 0), "{picture}");
     }
     // The filter is what takes the pattern away.
     let rmse = |row: &str| cell(&result, 0, row, "rmse")["ours"]["value"].as_f64().unwrap();

@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn every_choice_of_a_method_is_among_the_cases() {
         // Other pictures by intent, or the same shaders with other numbers.
-        const NO_METHODS: [&str; 30] = [
+        const NO_METHODS: [&str; 31] = [
             "mode",
             "pixel",
             "ss-guidance",
