@@ -83,9 +83,9 @@ void main() {
         }
 #endif
         if (VPL_BRDF != BRDF_LAMBERT) {
-            vec3 to_vpl = vpls[vpl].position_ws.xyz - position_ws;
-            to_vpl *= inversesqrt(max(dot(to_vpl, to_vpl), 1e-12));
-            of_light *= brdf(VPL_BRDF, lit.surface, lit.normal_ws, to_vpl, eye_ws);
+            float distance;
+            vec3 towards = towards_vpl(vpls[vpl], position_ws, distance);
+            of_light *= brdf(VPL_BRDF, lit.surface, lit.normal_ws, towards, eye_ws);
         }
         received += of_light;
     }

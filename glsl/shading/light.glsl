@@ -92,6 +92,14 @@ Incident incident_from(LightBlock light, vec3 position_ws) {
     return incident;
 }
 
+// Unit vector towards a virtual light, 0 where it is on the spot, and how far it is.
+vec3 towards_vpl(VplBlock vpl, vec3 position_ws, out float distance) {
+    precise vec3 to_vpl = vpl.position_ws.xyz - position_ws;
+    distance = length(to_vpl);
+    precise vec3 towards = to_vpl / max(distance, 1e-12);
+    return towards;
+}
+
 // Irradiance of a surface with normal `normal_ws`. `least_squared`: square of the least distance (--vpl-clamp).
 vec3 vpl_irradiance(VplBlock vpl, vec3 position_ws, vec3 normal_ws, float least_squared) {
     precise vec3 to_vpl = vpl.position_ws.xyz - position_ws;

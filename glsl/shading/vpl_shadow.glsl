@@ -4,9 +4,9 @@
 #define SHADING_VPL_SHADOW_GLSL
 
 bool is_hidden_from(VplBlock vpl, vec3 position_ws, vec3 normal_ws) {
-    vec3 to_vpl = vpl.position_ws.xyz - position_ws;
-    float distance = length(to_vpl);
-    return occluded(position_ws, normal_ws, to_vpl / max(distance, 1e-12), distance);
+    float distance;
+    vec3 towards = towards_vpl(vpl, position_ws, distance);
+    return occluded(position_ws, normal_ws, towards, distance);
 }
 
 #endif

@@ -46,9 +46,9 @@ vec3 added_by(VplBlock vpl, SurfacePoint point, vec3 to_eye) {
     if (VPL_BRDF == BRDF_LAMBERT) {
         return received;
     }
-    vec3 to_vpl = vpl.position_ws.xyz - point.position_ws;
-    to_vpl *= inversesqrt(max(dot(to_vpl, to_vpl), 1e-12));
-    return received * brdf(VPL_BRDF, point.surface, point.normal_ws, to_vpl, to_eye);
+    float distance;
+    vec3 towards = towards_vpl(vpl, point.position_ws, distance);
+    return received * brdf(VPL_BRDF, point.surface, point.normal_ws, towards, to_eye);
 }
 
 // Radiance that the point sends towards the eye.

@@ -28,9 +28,8 @@ struct Met {
 
 // What arrives of `received` from a virtual light.
 vec3 arriving(Point point, VplBlock light, vec3 received, inout Met met) {
-    vec3 to_light = light.position_ws.xyz - point.position_ws;
-    float distance = length(to_light);
-    vec3 direction = to_light / max(distance, 1e-12);
+    float distance;
+    vec3 direction = towards_vpl(light, point.position_ws, distance);
     met.ray_count++;
     if (occluded(point.position_ws, point.normal_ws, direction, distance)) {
         met.missed_count++;

@@ -107,9 +107,8 @@ void add_to(uint i, vec3 received) {
 vec3 received_from(VplBlock vpl, uint i) {
     vec3 received = vpl_irradiance(vpl, point_position_ws[i], point_normal_ws[i], params.least_squared);
 #ifdef VPL_BRDF_GGX
-    precise vec3 to_vpl = vpl.position_ws.xyz - point_position_ws[i];
-    // A light that lies on the point itself has no direction, and gives nothing.
-    received = seen_of(received, to_vpl * inversesqrt(max(dot(to_vpl, to_vpl), 1e-12)), i);
+    float distance;
+    received = seen_of(received, towards_vpl(vpl, point_position_ws[i], distance), i);
 #endif
     return received;
 }
