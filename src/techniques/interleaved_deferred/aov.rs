@@ -99,11 +99,10 @@ pub fn read(frame: &InterleavedFrame, gpu: &Arc<Gpu>, name: &str) -> Result<Aov>
         (SPLIT_COLOR, SplitPasses::SubBuffers(sub_buffers)) => {
             let SubBuffers { copies, surface, .. } = sub_buffers;
             let color = surface.color.as_ref().expect("a stage that the settings leave out is refused");
-            // Where shading has not read it, the split touched it last.
-            let stage = if frame.shade.parts.has_color() { Stage::Compute } else { copies.stage() };
             let last = match frame.shade.parts.has_color() {
-                true => copies.storage.read(stage),
-                false => copies.storage.written(stage),
+                true => copies.storage.read(Stage::Compute),
+                // Nothing has touched it since the split.
+                false => copies.storage.written(copies.stage()),
             };
             rgb(side_by_side(frame, gpu, color, last, decode::halves)?)
         }

@@ -3,7 +3,7 @@
 use super::mapping::mapping;
 use super::run_settings::run_count;
 use super::split_method::{Copier, Copies, Form, MaskKind, ShadeBy, SplitMethod};
-use super::sub_buffers::{Stage, Storage, texel_bytes};
+use super::sub_buffers::{Moved, Stage, Storage, texel_bytes};
 use super::subsets::subsets;
 use super::vpl_shadow::held::VplMaps;
 use crate::bvh::Bvh;
@@ -93,9 +93,7 @@ pub struct Choices {
     pub until_error: Option<f64>,
     /// How surfaces scatter virtual lights, and punctual ones that are joined to the subsets.
     pub vpl_brdf: Brdf,
-    /// What shading reads of a surface.
-    pub shaded: SurfaceParts,
-    /// What a split moves into sub-buffers: at least as much.
+    /// What a split moves into sub-buffers: as much as shading reads, at least.
     pub moved: SurfaceParts,
     pub vpl_shadow: VplShadow,
     /// Shadow maps of virtual lights, where they have any; `PreparedInterleaved` knows what room they have.
@@ -143,7 +141,7 @@ impl Choices {
             if split.sums_all() || direct != Direct::Interleaved { [1, 1] } else { direct_pattern(values, pattern)? };
         let light_pattern = if split.sums_all() { [1, 1] } else { pattern };
         let shading = ShadingSettings::new(values, lights, scene, caps);
-        let (shaded, moved) = surface_parts(values, split, shading.direct.extras)?;
+        let moved = moved(values, split, shading.direct.extras)?;
         let choices = Self {
             shading,
             split,
@@ -162,7 +160,6 @@ impl Choices {
             run_count: run_count(values),
             until_error: until_error(values),
             vpl_brdf: values.choice("vpl-brdf"),
-            shaded,
             moved,
             vpl_shadow: values.choice("vpl-shadow"),
             vpl_maps: None,
@@ -307,7 +304,7 @@ impl Choices {
     pub fn irradiance_constants(&self) -> Vec<(&'static str, u32)> {
         let [shadow, offset] = self.shading.direct.shadow_constants();
         let joined = ("HAS_JOINED", u32::from(self.joined_count() > 0));
-        [shadow, offset, joined].into_iter().chain(self.shaded.constant()).collect()
+        [shadow, offset, joined].into_iter().chain(self.shaded().constant()).collect()
     }
 
     /// Those of compute shaders that move pixels of the frame.
@@ -321,12 +318,22 @@ impl Choices {
         self.shading.direct.light_constants().into_iter().chain([vpl_brdf]).collect()
     }
 
+    /// What shading reads of a surface.
+    pub fn shaded(&self) -> SurfaceParts {
+        material_where(self.vpl_brdf != Brdf::Lambert, self.shading.direct.extras)
+    }
+
+    /// What a split that copies moves, and how it lies there.
+    pub fn moved_by(&self, copies: Copies) -> Moved {
+        Moved { parts: self.moved, storage: copies.storage, position: self.shading.position, writer: copies.stage() }
+    }
+
     /// What the split, or the shading where nothing is split, reads of the frame, and by what.
     pub fn read_of_frame(&self) -> (SurfaceParts, Stage) {
         match self.split {
             SplitMethod::Copy(copies) => (self.moved, copies.stage()),
-            SplitMethod::Masked(_) => (self.shaded, Stage::Fragment),
-            _ => (self.shaded, Stage::Compute),
+            SplitMethod::Masked(_) => (self.shaded(), Stage::Fragment),
+            _ => (self.shaded(), Stage::Compute),
         }
     }
 
@@ -394,11 +401,15 @@ impl Choices {
     }
 }
 
-/// What shading reads of a surface, and what a split moves for it.
+/// Geometry, and the material too where it `is_read`.
+fn material_where(is_read: bool, has_extras: bool) -> SurfaceParts {
+    if is_read { SurfaceParts::Material { has_extras } } else { SurfaceParts::Geometry }
+}
+
+/// What a split moves.
 ///
 /// Errors: `--sub-buffer-color off` where shading reads the colour (exit code 2).
-fn surface_parts(values: &Values, split: SplitMethod, has_extras: bool) -> Result<(SurfaceParts, SurfaceParts)> {
-    let material = SurfaceParts::Material { has_extras };
+fn moved(values: &Values, split: SplitMethod, has_extras: bool) -> Result<SurfaceParts> {
     let is_glossy = !values.is("vpl-brdf", Brdf::Lambert);
     let asked = values.unless_auto("sub-buffer-color", |values, key| values.is_on(key));
     if is_glossy && asked == Some(false) && split.copies().is_some() {
@@ -407,8 +418,7 @@ fn surface_parts(values: &Values, split: SplitMethod, has_extras: bool) -> Resul
         ))
         .note("--sub-buffer-color auto or on; a --split that copies nothing; or --vpl-brdf lambert"));
     }
-    let when = |has_color: bool| if has_color { material } else { SurfaceParts::Geometry };
-    Ok((when(is_glossy), when(is_glossy || asked == Some(true))))
+    Ok(material_where(is_glossy || asked == Some(true), has_extras))
 }
 
 /// Limits of the splits on a device, by the limits that `Choices::new` and the plan refuse with.

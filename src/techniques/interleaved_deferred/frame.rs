@@ -78,7 +78,7 @@ impl InterleavedFrame {
             words_a_point: vpl_shadow::words_a_point(choices),
             _unused: [0; 3],
         };
-        let shade = ShadeGpu::new(gpu, resources, subsets, params, choices.shaded)?;
+        let shade = ShadeGpu::new(gpu, resources, subsets, params, choices.shaded())?;
         let (early, reader) = choices.read_of_frame();
         let lit_count = if choices.direct_full { direct_lights.len() } else { 0 };
         Ok(Self {

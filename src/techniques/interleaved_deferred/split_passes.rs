@@ -62,10 +62,11 @@ pub fn plan_split(plan: &mut Plan, choices: &Choices) {
 
 /// Plans resources and passes from the shading on; returns the name of the irradiance in frame order.
 pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
-    let Choices { shading, split, mapping, shaded: parts, .. } = choices;
+    let Choices { shading, split, mapping, .. } = choices;
+    let parts = choices.shaded();
     let frame_bytes = mapping.frame_texel_count() * 8;
     let (shaded, shade) = (format!("{NAME}.shade.irradiance"), format!("{NAME}.shade"));
-    let surface = |stage: Stage| gbuffer::parts_as(NAME, shading.position, *parts, stage.samples()).into_iter();
+    let surface = |stage: Stage| gbuffer::parts_as(NAME, shading.position, parts, stage.samples()).into_iter();
     let hidden = |stage: Stage| vpl_shadow::read(choices, stage.reads());
     let (read, written) = (Access::ComputeRead, Access::ComputeWrite);
     match split {
@@ -95,7 +96,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices) -> String {
             let storage = copies.storage;
             let stage = choices.shade_stage();
             storage.plan(plan, "irradiance", "shade.irradiance", mapping, 8, stage);
-            let surface = Surface::touches("split", *parts, storage.read(stage)).chain(hidden(stage));
+            let surface = Surface::touches("split", parts, storage.read(stage)).chain(hidden(stage));
             plan.pass(shade, surface.chain([(shaded.clone(), storage.written(stage))]));
             gather::plan(plan, choices, *copies, shaded)
         }
@@ -130,7 +131,7 @@ impl SplitPasses {
                 copies,
                 gathered: resources.buffer(&format!("{NAME}.{}", gather::target(choices))),
                 split: Split::new(gpu, resources, choices, copies)?,
-                surface: Surface::new(gpu, resources, "split", choices.moved, copies.storage)?,
+                surface: Surface::new(gpu, resources, "split", &choices.moved_by(copies))?,
                 shade: match choices.shade_stage() {
                     Stage::Compute => ShadeCopied::Dispatched(ShadeSubBuffers::new(gpu, choices, copies.storage)?),
                     Stage::Fragment => ShadeCopied::Drawn(ShadeDrawn::new(gpu, choices)?),

@@ -204,11 +204,23 @@ impl Edge<'_, Texels> {
     }
 }
 
+/// What a split moves, and how it lies and is written there.
+#[derive(Clone, Copy)]
+pub struct Moved {
+    pub parts: SurfaceParts,
+    pub storage: Storage,
+    pub position: PositionStorage,
+    pub writer: Stage,
+}
+
 /// Position and normal of each texel: what irradiance needs; and colour where splits move it, as the paper's do.
 pub struct Surface {
     pub position: Texels,
     pub normal: Texels,
     pub color: Option<Texels>,
+    /// What there is of a texel, and its bytes.
+    pub parts: SurfaceParts,
+    pub texel_bytes: u64,
 }
 
 /// Parts of sub-buffers, in the order of fragment.frag's locations.
@@ -223,8 +235,8 @@ pub fn texel_bytes(parts: SurfaceParts, position: PositionStorage) -> u64 {
 
 impl Surface {
     /// Plans `what`.position, `what`.normal and what else `parts` have.
-    pub fn plan(plan: &mut Plan, what: &str, mapping: &MappingParams, sub_buffers: &Moved) {
-        let Moved { parts, storage, position, writer } = *sub_buffers;
+    pub fn plan(plan: &mut Plan, what: &str, mapping: &MappingParams, moved: &Moved) {
+        let Moved { parts, storage, position, writer } = *moved;
         for part in part_names(parts) {
             let bytes = if *part == "position" { position.bytes() } else { 8 };
             storage.plan(plan, "split", &format!("{what}.{part}"), mapping, bytes, writer);
@@ -237,16 +249,12 @@ impl Surface {
     }
 
     /// Takes what `plan` put in.
-    pub fn new(
-        gpu: &Arc<Gpu>,
-        resources: &mut Resources,
-        what: &str,
-        parts: SurfaceParts,
-        storage: Storage,
-    ) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, what: &str, moved: &Moved) -> Result<Self> {
+        let Moved { parts, storage, position, .. } = *moved;
+        let texel_bytes = texel_bytes(parts, position);
         let mut texels = |part: &str| Texels::new(gpu, resources, &format!("{what}.{part}"), storage);
         let color = parts.has_color().then(|| texels("color")).transpose()?;
-        Ok(Self { position: texels("position")?, normal: texels("normal")?, color })
+        Ok(Self { position: texels("position")?, normal: texels("normal")?, color, parts, texel_bytes })
     }
 
     /// Names the access that touched all parts last.
@@ -285,13 +293,4 @@ impl Edge<'_, Surface> {
     pub fn to(self, parts: SurfaceParts, access: Access) -> Vec<Barrier> {
         self.resource.some(parts).map(|texels| texels.from(self.from).to(access)).collect()
     }
-}
-
-/// What a split moves, and how it lies and is written there.
-#[derive(Clone, Copy)]
-pub struct Moved {
-    pub parts: SurfaceParts,
-    pub storage: Storage,
-    pub position: PositionStorage,
-    pub writer: Stage,
 }

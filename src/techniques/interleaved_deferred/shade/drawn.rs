@@ -35,7 +35,7 @@ impl ShadeDrawn {
             ..plain
         };
         let pipeline = GraphicsPipeline::new(gpu, &description)?;
-        Ok(Self { pipeline, is_quad, texel_bytes: texel_bytes(choices.shaded, choices.shading.position) })
+        Ok(Self { pipeline, is_quad, texel_bytes: texel_bytes(choices.shaded(), choices.shading.position) })
     }
 
     pub fn record(

@@ -23,7 +23,7 @@ impl ShadeSubBuffers {
         let [position, shadow, brdf] = choices.shade_axes();
         let shader = variant(COMP_VARIANTS, &[position, storage.name(), shadow, brdf]);
         let listed = TexelListPipeline::new(gpu, choices, shader)?;
-        Ok(Self { listed, storage, texel_bytes: texel_bytes(choices.shaded, choices.shading.position) })
+        Ok(Self { listed, storage, texel_bytes: texel_bytes(choices.shaded(), choices.shading.position) })
     }
 
     pub fn record(

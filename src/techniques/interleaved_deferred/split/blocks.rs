@@ -11,14 +11,13 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::blocks::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::{GBuffer, SurfaceParts};
+use crate::passes::gbuffer::GBuffer;
 use crate::techniques::interleaved_deferred::split::from_frame::FromFrame;
 use std::sync::Arc;
 
 pub struct SplitBlocks {
     pipeline: ComputePipeline,
     copies: Copies,
-    parts: SurfaceParts,
 }
 
 impl SplitBlocks {
@@ -26,8 +25,7 @@ impl SplitBlocks {
         let axes =
             [choices.shading.position.name(), copies.storage.name(), copies.form.name(), choices.moved.color_name()];
         let shader = variant(COMP_VARIANTS, &axes);
-        let pipeline = ComputePipeline::new(gpu, shader, &choices.split_constants())?;
-        Ok(Self { pipeline, copies, parts: choices.moved })
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.split_constants())?, copies })
     }
 
     pub fn record(
@@ -38,6 +36,6 @@ impl SplitBlocks {
         blocks: &Surface,
     ) -> Result<()> {
         let threads = self.copies.padded_threads(mapping);
-        FromFrame::over(self.parts, "split.blocks", &self.pipeline, threads).record(cmd, mapping, gbuffer, blocks)
+        FromFrame::over("split.blocks", &self.pipeline, threads).record(cmd, mapping, gbuffer, blocks)
     }
 }

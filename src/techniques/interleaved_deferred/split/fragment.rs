@@ -7,7 +7,7 @@
 use super::super::choices::Choices;
 use super::super::lookup::{self, Lookup};
 use super::super::split_method::Copier;
-use super::super::sub_buffers::{Surface, texel_bytes, words_format};
+use super::super::sub_buffers::{Surface, words_format};
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::shader::structs::MappingParams;
@@ -15,7 +15,7 @@ use crate::gpu::shader::techniques::interleaved_deferred::split::fragment::FRAG_
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Barrier, Bound, ColorTarget, Commands, Edge, Gpu, Traffic};
 use crate::passes::fullscreen;
-use crate::passes::gbuffer::{GBuffer, SurfaceParts};
+use crate::passes::gbuffer::GBuffer;
 use crate::plan::{Plan, Resources};
 use crate::techniques::interleaved_deferred::resources::NAME;
 use std::sync::Arc;
@@ -43,8 +43,6 @@ struct Source<'a> {
 struct Program {
     pipeline: GraphicsPipeline,
     lookup: Lookup,
-    parts: SurfaceParts,
-    texel_bytes: u64,
 }
 
 impl Program {
@@ -58,8 +56,7 @@ impl Program {
         let count = if parts.has_color() { 3 } else { 2 };
         let description =
             GraphicsDescription { constants: &constants, ..fullscreen::description(shader, &formats[..count]) };
-        let pipeline = GraphicsPipeline::new(gpu, &description)?;
-        Ok(Self { pipeline, lookup, parts, texel_bytes: texel_bytes(parts, position) })
+        Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)?, lookup })
     }
 
     fn record(
@@ -72,7 +69,7 @@ impl Program {
     ) -> Result<()> {
         let traffic = Traffic {
             read_bytes: source.texels * source.texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
-            written_bytes: mapping.texel_count() * self.texel_bytes,
+            written_bytes: mapping.texel_count() * target.texel_bytes,
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
@@ -100,11 +97,11 @@ impl Program {
         target: &Surface,
     ) -> Result<()> {
         let source = Source {
-            barriers: gbuffer.parts_to(self.parts, Access::FragmentSample),
-            bound: gbuffer.resource.bound_parts(self.parts),
+            barriers: gbuffer.parts_to(target.parts, Access::FragmentSample),
+            bound: gbuffer.resource.bound_parts(target.parts),
             // Padding is written, and read nowhere.
             texels: mapping.extent().pixel_count(),
-            texel_bytes: gbuffer.resource.parts_bytes(self.parts),
+            texel_bytes: gbuffer.resource.parts_bytes(target.parts),
         };
         self.record(cmd, pass, mapping, source, target)
     }
@@ -163,10 +160,10 @@ impl FragmentSplitBlocks {
     ) -> Result<()> {
         self.blocks.record_from_frame(cmd, "split.blocks", mapping, gbuffer, &self.between)?;
         let source = Source {
-            barriers: self.between.from(Access::ColorWrite).to(self.translate.parts, Access::FragmentSample),
-            bound: self.between.source(self.translate.parts).collect(),
+            barriers: self.between.from(Access::ColorWrite).to(split.parts, Access::FragmentSample),
+            bound: self.between.source(split.parts).collect(),
             texels: mapping.texel_count(),
-            texel_bytes: self.translate.texel_bytes,
+            texel_bytes: split.texel_bytes,
         };
         self.translate.record(cmd, "split.translate", mapping, source, split)
     }

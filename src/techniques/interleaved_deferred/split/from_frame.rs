@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::{Access, Commands, Edge, Traffic};
-use crate::passes::gbuffer::{GBuffer, SurfaceParts};
+use crate::passes::gbuffer::GBuffer;
 use crate::techniques::interleaved_deferred::resources::NAME;
-use crate::techniques::interleaved_deferred::sub_buffers::{Surface, texel_bytes};
+use crate::techniques::interleaved_deferred::sub_buffers::Surface;
 
 /// Bytes of a copy by a compute shader, padding included: the frame's nearest pixel is read for it. `texel_bytes`: read and
 /// written.
@@ -17,7 +17,6 @@ pub fn copied(mapping: &MappingParams, texel_bytes: [u64; 2], invocations: u64) 
 
 /// A compute shader from the G-buffer, dispatched.
 pub struct FromFrame<'a> {
-    pub(super) parts: SurfaceParts,
     /// Without the technique.
     pub(super) pass: &'a str,
     pub(super) pipeline: &'a ComputePipeline,
@@ -28,8 +27,8 @@ pub struct FromFrame<'a> {
 
 impl<'a> FromFrame<'a> {
     /// One thread for each place of `threads`.
-    pub(super) fn over(parts: SurfaceParts, pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
-        Self { parts, pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
+    pub(super) fn over(pass: &'a str, pipeline: &'a ComputePipeline, threads: [u32; 3]) -> Self {
+        Self { pass, pipeline, groups: pipeline.groups(threads), invocations: product(threads) }
     }
 
     pub(super) fn record(
@@ -39,13 +38,12 @@ impl<'a> FromFrame<'a> {
         gbuffer: Edge<'_, GBuffer>,
         target: &Surface,
     ) -> Result<()> {
-        let (read, parts) = (gbuffer.resource, self.parts);
-        let texel_bytes = [read.parts_bytes(parts), texel_bytes(parts, read.position_storage)];
+        let texel_bytes = [gbuffer.resource.parts_bytes(target.parts), target.texel_bytes];
         let traffic = copied(mapping, texel_bytes, self.invocations);
         cmd.pass(&format!("{NAME}.{}", self.pass), traffic, |cmd| {
-            cmd.barriers(gbuffer.parts_to(parts, Access::ComputeSample));
+            cmd.barriers(gbuffer.parts_to(target.parts, Access::ComputeSample));
             cmd.barriers(target.discard(Access::ComputeWrite));
-            let mut bound = read.bound_parts(parts);
+            let mut bound = gbuffer.resource.bound_parts(target.parts);
             bound.extend(target.target());
             cmd.dispatch(self.pipeline, bytemuck::bytes_of(mapping), &bound, self.groups)
         })

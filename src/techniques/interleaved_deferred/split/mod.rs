@@ -36,9 +36,8 @@ pub enum Split {
 
 /// Plans the sub-buffers, what lies between two passes, and the passes.
 pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies) {
-    let Choices { mapping, shading, moved: parts, .. } = choices;
-    let (parts, position, stage) = (*parts, shading.position, copies.stage());
-    let moved = Moved { parts, storage: copies.storage, position, writer: stage };
+    let (mapping, moved, stage) = (&choices.mapping, choices.moved_by(copies), copies.stage());
+    let Moved { parts, position, .. } = moved;
     let (written, read) = (copies.storage.written(stage), copies.storage.read(stage));
     Surface::plan(plan, "split", mapping, &moved);
     fragment::plan(plan, mapping, copies.by);
@@ -56,7 +55,7 @@ pub fn plan(plan: &mut Plan, choices: &Choices, copies: Copies) {
 
 impl Split {
     pub fn new(gpu: &Arc<Gpu>, resources: &mut Resources, choices: &Choices, copies: Copies) -> Result<Self> {
-        let mut between = || Surface::new(gpu, resources, "split.blocks", choices.moved, copies.storage);
+        let mut between = || Surface::new(gpu, resources, "split.blocks", &choices.moved_by(copies));
         Ok(match copies.by {
             Copier::OnePass => Self::OnePass(SplitOnePass::new(gpu, choices, copies)?),
             Copier::TwoPass => Self::TwoPass {

@@ -11,14 +11,13 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::one_pass::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::{GBuffer, SurfaceParts};
+use crate::passes::gbuffer::GBuffer;
 use crate::techniques::interleaved_deferred::split::from_frame::FromFrame;
 use std::sync::Arc;
 
 pub struct SplitOnePass {
     pipeline: ComputePipeline,
     copies: Copies,
-    parts: SurfaceParts,
 }
 
 impl SplitOnePass {
@@ -26,8 +25,7 @@ impl SplitOnePass {
         let axes =
             [choices.shading.position.name(), copies.storage.name(), copies.form.name(), choices.moved.color_name()];
         let shader = variant(COMP_VARIANTS, &axes);
-        let pipeline = ComputePipeline::new(gpu, shader, &choices.split_constants())?;
-        Ok(Self { pipeline, copies, parts: choices.moved })
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.split_constants())?, copies })
     }
 
     pub fn record(
@@ -45,6 +43,6 @@ impl SplitOnePass {
             }
             Form::Push => self.copies.padded_threads(mapping),
         };
-        FromFrame::over(self.parts, "split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
+        FromFrame::over("split", &self.pipeline, threads).record(cmd, mapping, gbuffer, split)
     }
 }

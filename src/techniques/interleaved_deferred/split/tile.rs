@@ -11,13 +11,12 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::tile::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Commands, Edge, Gpu};
-use crate::passes::gbuffer::{GBuffer, SurfaceParts};
+use crate::passes::gbuffer::GBuffer;
 use crate::techniques::interleaved_deferred::split::from_frame::{FromFrame, product};
 use std::sync::Arc;
 
 pub struct SplitTile {
     pipeline: ComputePipeline,
-    parts: SurfaceParts,
 }
 
 /// Constants of tile.comp, there and back.
@@ -29,10 +28,9 @@ pub fn constants(choices: &Choices) -> Vec<(&'static str, u32)> {
 
 impl SplitTile {
     pub fn new(gpu: &Arc<Gpu>, choices: &Choices, copies: Copies) -> Result<Self> {
-        let parts = choices.moved;
-        let axes = [choices.shading.position.name(), copies.storage.name(), parts.color_name()];
-        let constants: Vec<_> = constants(choices).into_iter().chain(parts.constant()).collect();
-        Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &axes), &constants)?, parts })
+        let axes = [choices.shading.position.name(), copies.storage.name(), choices.moved.color_name()];
+        let constants: Vec<_> = constants(choices).into_iter().chain(choices.moved.constant()).collect();
+        Ok(Self { pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &axes), &constants)? })
     }
 
     pub fn record(
@@ -44,8 +42,7 @@ impl SplitTile {
     ) -> Result<()> {
         let [x, y] = mapping.block_counts();
         let invocations = product([x, y, self.pipeline.workgroup.iter().product()]);
-        let copy =
-            FromFrame { parts: self.parts, pass: "split", pipeline: &self.pipeline, groups: [x, y, 1], invocations };
+        let copy = FromFrame { pass: "split", pipeline: &self.pipeline, groups: [x, y, 1], invocations };
         copy.record(cmd, mapping, gbuffer, split)
     }
 }

@@ -3,14 +3,13 @@
 
 use super::super::choices::Choices;
 use super::super::split_method::{Copies, Form};
-use super::super::sub_buffers::{Surface, texel_bytes};
+use super::super::sub_buffers::Surface;
 use crate::error::Result;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::shader::structs::MappingParams;
 use crate::gpu::shader::techniques::interleaved_deferred::split::translate::COMP_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::gpu::{Access, Commands, Edge, Gpu};
-use crate::passes::gbuffer::SurfaceParts;
 use crate::techniques::interleaved_deferred::resources::NAME;
 use crate::techniques::interleaved_deferred::split::from_frame::{copied, product};
 use std::sync::Arc;
@@ -18,8 +17,6 @@ use std::sync::Arc;
 pub struct SplitTranslate {
     pipeline: ComputePipeline,
     copies: Copies,
-    parts: SurfaceParts,
-    texel_bytes: u64,
 }
 
 impl SplitTranslate {
@@ -27,9 +24,7 @@ impl SplitTranslate {
         let axes =
             [choices.shading.position.name(), copies.storage.name(), copies.form.name(), choices.moved.color_name()];
         let shader = variant(COMP_VARIANTS, &axes);
-        let (parts, position) = (choices.moved, choices.shading.position);
-        let pipeline = ComputePipeline::new(gpu, shader, &choices.shading.workgroup_constants())?;
-        Ok(Self { pipeline, copies, parts, texel_bytes: texel_bytes(parts, position) })
+        Ok(Self { pipeline: ComputePipeline::new(gpu, shader, &choices.shading.workgroup_constants())?, copies })
     }
 
     pub fn record(
@@ -43,11 +38,11 @@ impl SplitTranslate {
             Form::Pull => self.copies.sub_buffer_threads(mapping),
             Form::Push => self.copies.padded_threads(mapping),
         };
-        let traffic = copied(mapping, [self.texel_bytes; 2], product(threads));
+        let traffic = copied(mapping, [split.texel_bytes; 2], product(threads));
         cmd.pass(&format!("{NAME}.split.translate"), traffic, |cmd| {
-            cmd.barriers(blocks.to(self.parts, self.copies.storage.read(self.copies.stage())));
+            cmd.barriers(blocks.to(split.parts, self.copies.storage.read(self.copies.stage())));
             cmd.barriers(split.discard(Access::ComputeWrite));
-            let bound: Vec<_> = blocks.resource.source(self.parts).chain(split.target()).collect();
+            let bound: Vec<_> = blocks.resource.source(split.parts).chain(split.target()).collect();
             cmd.dispatch(&self.pipeline, bytemuck::bytes_of(mapping), &bound, self.pipeline.groups(threads))
         })
     }
