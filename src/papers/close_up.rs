@@ -31,6 +31,7 @@ pub fn write(close_up: &CloseUp, folder: &Path) -> Result<()> {
 }
 
 fn cut(whole: &RgbaImage, CloseUp { middle, part, .. }: &CloseUp) -> RgbaImage {
+    // At least 1: a file of no pixels is no PNG.
     let sides = [whole.width(), whole.height()];
     let extent = sides.map(|side| ((side as f32 * part).round() as u32).clamp(1, side));
     let first = [0, 1].map(|axis| {

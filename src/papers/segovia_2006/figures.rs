@@ -195,10 +195,10 @@ fn qualities(scene: &str, common: &str, middle: [f32; 2], ways: &[(&str, &str, &
         recipe.errors(0, title, [&format!("{name}.exr"), "reference.exr"], ERRORS.columns);
         recipe.picture(*title, format!("{picture}.png"));
     }
-    let all = ("all", "all lights");
-    for (name, title) in [all].into_iter().chain(ways.iter().map(|(name, title, _)| (*name, *title))) {
-        let picture = if name == all.0 { name.to_owned() } else { format!("{name}-picture") };
-        recipe.close_up(format!("{title}, close-up"), format!("{picture}.png"), middle, CLOSE_UP);
+    let whole: Vec<(String, String)> =
+        recipe.pictures.iter().map(|picture| (picture.title.clone(), picture.file.clone())).collect();
+    for (title, file) in whole {
+        recipe.close_up(format!("{title}, close-up"), file, middle, CLOSE_UP);
     }
     recipe
 }
