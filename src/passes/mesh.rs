@@ -91,14 +91,13 @@ pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
     unsafe {
         device.cmd_bind_vertex_buffers(cmd.buffer(), 0, &streams, &[0; VERTEX_BUFFERS.len()][..streams.len()]);
     }
-    bind_indices(cmd, scene);
+    bind_indices(cmd, &scene.indices);
 }
 
-/// Binds the scene's indices, inside rendering.
-pub fn bind_indices(cmd: &Commands, scene: &SceneGpu) {
-    let indices = scene.indices.handle;
-    // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.
-    unsafe { cmd.gpu().device.cmd_bind_index_buffer(cmd.buffer(), indices, 0, vk::IndexType::UINT32) };
+/// Binds an index list, inside rendering.
+pub fn bind_indices(cmd: &Commands, indices: &Buffer) {
+    // SAFETY: the buffer is being recorded; the scene and the resources outlive the recorded frame.
+    unsafe { cmd.gpu().device.cmd_bind_index_buffer(cmd.buffer(), indices.handle, 0, vk::IndexType::UINT32) };
 }
 
 /// Draws `calls` with `pipeline`, which is bound, setting sides, winding and material where they change; `changed` is told

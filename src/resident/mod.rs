@@ -10,6 +10,7 @@
 mod boxes;
 mod clipped;
 mod clusters;
+pub mod coarse;
 mod disc;
 mod draw_call;
 mod draw_view;
@@ -25,7 +26,7 @@ pub mod traced;
 mod visible;
 pub mod volume;
 
-pub use boxes::ClusterBoxes;
+pub use boxes::{Casters, ClusterBoxes};
 pub use clusters::Cluster;
 pub use disc::LensDisc;
 pub use geometry::{Geometry, groups_of};

@@ -6,7 +6,7 @@ use super::split_method::{Form, ShadeBy, Split, StorageKind};
 use super::vpl_shadow::unrolled::{MapIndex, MapShape};
 use crate::passes::filter::{Filter, WalkEnd};
 use crate::settings::{
-    BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, Kind, NORMAL_THRESHOLD, POSITION,
+    BRDF, CULL, CULL_BY, Changes, DIRECT_SHADOW, EMISSIVE, GEOMETRY, GeometryChoice, Kind, NORMAL_THRESHOLD, POSITION,
     POSITION_THRESHOLD, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_SLOPE_BIAS, Setting, TEXELS, Unread, VPL_BRDF, VPL_CLAMP,
     Values, WORKGROUP,
 };
@@ -172,6 +172,19 @@ pub const SETTINGS: &[Setting] = &[
         help: "Shadow maps of virtual lights that are held at once, in one image; the lights take turns; auto: as many as 64 MiB or \
                what is left of --memory-budget hold",
         unread: without_vpl_maps,
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "vpl-shadow-detail",
+        kind: Kind::Number { min: 0.0, max: 16.0 },
+        default: "0",
+        unit: "px",
+        help: "Texels of a virtual light's shadow map that a surface in it may be off by: solid surfaces are drawn by the coarsest \
+               triangles whose finer ones are as near; 0: by all of theirs",
+        unread: |values| {
+            without_vpl_maps(values)
+                .or_else(|| Unread::with(values, "shadow-casters", &[GeometryChoice::All], "all triangles are drawn"))
+        },
         ..Setting::changing(Changes::Picture)
     },
     // FLIP of cornell, hall and a map against shadow rays, maps of 128, is 0.0037, 0.0194 and 0.0005 with these two; 0.0036, 0.0207

@@ -98,6 +98,34 @@ fn culled_maps_hold_all_that_is_asked() {
     }
 }
 
+/// Where a map's texels are large, few triangles hide what all of them hide.
+#[test]
+fn coarser_triangles_hide_what_all_hide() {
+    let hall = Watched::open("hall:triangles=60000");
+    let size = ("vpl-shadow-size", "64");
+    for shape in ["hemicube", "layers"] {
+        let way = both(&COMMON, &[MAP, size, ("vpl-shadow-shape", shape), ("vpl-shadow-maps", "7")]);
+        let of = |detail: &str| {
+            let changes = both(&way, &[("vpl-shadow-detail", detail)]);
+            let renderer = hall.render_stages(NAME, &changes, &[HIDDEN]);
+            let AovChannels::YU32(counts) = renderer.aov(HIDDEN).unwrap().channels else { panic!("counts") };
+            let counter = |name: &str| renderer.counters[name];
+            (counts, counter("vpl_map_triangles_drawn"), counter("vpl_map_coarse_triangles_drawn"))
+        };
+        let (all, triangles, coarse) = of("0");
+        assert!(coarse == 0.0 && all.iter().sum::<u32>() > 0);
+        let mut before = (triangles, 0.0);
+        for (detail, most_apart) in [("0.1", 0.002), ("0.5", 0.01), ("2", 0.04)] {
+            let (counts, triangles_drawn, coarse) = of(detail);
+            let found = (triangles_drawn, apart(&counts, &all, 4));
+            println!("{shape}, {detail}: {:.3} of all triangles, {:.5} otherwise", found.0 / triangles, found.1);
+            assert!(found.0 < before.0 && coarse > 0.0 && coarse <= found.0, "{detail}: {found:?}, {coarse}");
+            assert!(found.1 < most_apart, "{detail}: {found:?}");
+            before = found;
+        }
+    }
+}
+
 /// A wall hides all that is behind it, whichever map's turn it is.
 #[test]
 fn a_room_behind_a_wall_is_dark() {

@@ -67,7 +67,7 @@ pub fn draw<'a>(
 ) {
     let DrawInputs { scene, primitives, .. } = inputs;
     if stages.is_indexed {
-        mesh::bind_indices(cmd, scene);
+        mesh::bind_indices(cmd, &scene.indices);
     }
     mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
         let params = primitives.params(scene, call);

@@ -7,7 +7,8 @@ use crate::error::{Error, Result};
 use crate::frame::View;
 use crate::gpu::shader::structs::{VplBlock, VplMapBlock};
 use crate::gpu::{Access, Buffer, Gpu, upload};
-use crate::resident::{ClusterBoxes, DrawList, SceneGpu};
+use crate::resident::coarse::CoarseMeshes;
+use crate::resident::{Casters, ClusterBoxes, SceneGpu};
 use crate::scene::{Bounds, Scene};
 use crate::settings::GeometryChoice;
 use glam::Vec3;
@@ -23,7 +24,7 @@ const SLACK: [f32; 2] = [1e-4, 1.0 / 1024.0];
 /// A face that is drawn.
 pub struct FaceDraws {
     pub index: u32,
-    pub casters: DrawList,
+    pub casters: Casters,
 }
 
 /// All of some lights' maps.
@@ -37,11 +38,18 @@ pub struct MapDraws {
 
 impl MapDraws {
     /// Errors: more draws than can be recorded (exit code 4).
-    pub fn of(maps: &VplMaps, scene: &Scene, view: &View, resident: &SceneGpu, vpls: &[VplBlock]) -> Result<Self> {
+    pub fn of(
+        maps: &VplMaps,
+        scene: &Scene,
+        view: &View,
+        resident: &SceneGpu,
+        coarse: &CoarseMeshes,
+        vpls: &[VplBlock],
+    ) -> Result<Self> {
         let atlas = maps.atlas;
         let bounds = box_of(scene);
         let (mut clips, mut faces, mut draw_count) = (Vec::new(), Vec::new(), 0);
-        let boxes = ClusterBoxes::new(scene, resident, view);
+        let boxes = ClusterBoxes::new(scene, resident, coarse, view);
         let extreme = bounds.min.abs().max(bounds.max.abs()).max_element();
         let slack_m = (SLACK[0] * bounds.diagonal()).max(SLACK[1] * extreme);
         for vpl in vpls {
@@ -51,15 +59,18 @@ impl MapDraws {
                 .zip(&all)
                 .filter_map(|(index, face)| {
                     if maps.casters == GeometryChoice::All {
-                        return Some(FaceDraws { index, casters: boxes.list(|_| true) });
+                        return Some(FaceDraws { index, casters: boxes.list(|_| true, |_| 0.0) });
                     }
                     let reach = Reach::of(vpl, face);
                     let is_asked = is_bright(vpl) && boxes.seen().iter().any(|seen| reach.may_hold(seen, slack_m));
-                    let casters = || boxes.list(|bounds| reach.may_hold(bounds, slack_m));
+                    let texel_m = |bounds: &Bounds| reach.least_texel_m(bounds, atlas.size_px);
+                    let casters = || {
+                        boxes.list(|bounds| reach.may_hold(bounds, slack_m), |bounds| maps.detail_px * texel_m(bounds))
+                    };
                     is_asked.then(|| FaceDraws { index, casters: casters() })
                 })
                 .collect();
-            draw_count += drawn.iter().map(|face| face.casters.calls().count()).sum::<usize>();
+            draw_count += drawn.iter().map(|face| face.casters.draw_count()).sum::<usize>();
             if draw_count > MOST_DRAWS {
                 let done = faces.len() + 1;
                 return Err(Error::memory(format!(

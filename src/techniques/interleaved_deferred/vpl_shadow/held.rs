@@ -3,6 +3,7 @@
 use super::unrolled::{MapAtlas, MapIndex, MapShape};
 use crate::caps::Limits;
 use crate::error::{Error, Result};
+use crate::resident::coarse;
 use crate::scene::Scene;
 use crate::settings::{GeometryChoice, Values};
 use crate::techniques::interleaved_deferred::resources::NAME;
@@ -13,6 +14,8 @@ pub const HIDDEN: &str = "interleaved_deferred.vpl_shadow.hidden";
 pub(super) const MAPS: &str = "interleaved_deferred.vpl_shadow.maps";
 pub(super) const VIEWS: &str = "interleaved_deferred.vpl_shadow.views";
 pub(super) const VPL_MAPS: &str = "interleaved_deferred.vpl_shadow.lights";
+/// Full name of the list of coarser triangles' indices.
+pub(super) const INDICES: &str = "interleaved_deferred.vpl_shadow.indices";
 /// Row of the memory table.
 pub(super) const GROUP: &str = "vpl_shadow";
 
@@ -29,6 +32,10 @@ pub struct VplMaps {
     pub(super) slope_bias_px: f32,
     pub(super) bias_m: f32,
     pub(super) casters: GeometryChoice,
+    /// Texels that a surface in a map may be off by.
+    pub(super) detail_px: f32,
+    /// Indices that coarser triangles have room for; 0 where everything is drawn as it is.
+    coarse_index_count: u64,
 }
 
 impl VplMaps {
@@ -44,10 +51,14 @@ impl VplMaps {
         let of = |map_count| MapAtlas::new(shape, size_px, map_count, limits.max_image_side_px);
         // Layers have no index.
         let index = if shape == MapShape::Layers { MapIndex::Arithmetic } else { values.choice("vpl-shadow-index") };
+        let casters: GeometryChoice = values.choice("shadow-casters");
+        let detail_px = values.number("vpl-shadow-detail") as f32;
+        let is_coarse = casters == GeometryChoice::Culled && detail_px > 0.0;
+        let coarse_index_count = if is_coarse { coarse::most_indices(scene) } else { 0 };
         let asked = values.unless_auto("vpl-shadow-maps", Values::integer).map(|count| count as u32);
         let map_count = asked.unwrap_or_else(|| {
             let index_bytes = if index == MapIndex::CubeMap { of(1).index_description().bytes() } else { 0 };
-            let room_bytes = room_bytes.saturating_sub(index_bytes);
+            let room_bytes = room_bytes.saturating_sub(index_bytes + coarse_bytes(coarse_index_count));
             let bytes = AUTO_BYTES.min(room_bytes).min(limits.max_allocation_bytes);
             (bytes / of(1).description().bytes()).clamp(1, u64::from(most)) as u32
         });
@@ -66,10 +77,17 @@ impl VplMaps {
         Ok(Self {
             atlas: of(map_count),
             index,
+            detail_px,
+            coarse_index_count,
             slope_bias_px: values.number("shadow-slope-bias") as f32,
             bias_m: values.length("shadow-bias", scene.lasting_bounds().diagonal().max(1e-6)),
-            casters: values.choice("shadow-casters"),
+            casters,
         })
+    }
+
+    /// Bytes of the index list of coarser triangles, where there may be any.
+    pub(super) fn coarse_bytes(&self) -> Option<u64> {
+        (self.coarse_index_count > 0).then(|| coarse_bytes(self.coarse_index_count))
     }
 
     /// The axis MAPS of maps.comp.
@@ -85,6 +103,10 @@ impl VplMaps {
         let MapAtlas { size_px, map_count, .. } = self.atlas;
         [("vpl-shadow-size", size_px.to_string()), ("vpl-shadow-maps", map_count.to_string())]
     }
+}
+
+fn coarse_bytes(index_count: u64) -> u64 {
+    index_count * size_of::<u32>() as u64
 }
 
 /// Lights whose maps are held at once, `first` to `end` of the list.

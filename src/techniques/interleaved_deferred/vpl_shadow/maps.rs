@@ -5,7 +5,7 @@
 
 use super::super::shade::ShadeGpu;
 use super::draws::{FaceDraws, MapDraws};
-use super::held::{GROUP, MAPS, Turn, VIEWS, VPL_MAPS, VplMaps, drawing_pass, finding_pass, turns};
+use super::held::{GROUP, INDICES, MAPS, Turn, VIEWS, VPL_MAPS, VplMaps, drawing_pass, finding_pass, turns};
 use super::index::{self, IndexCube};
 use super::sought::{Sought, clear, groups, params};
 use super::unrolled::{MapIndex, MapShape};
@@ -16,12 +16,14 @@ use crate::gpu::shader::structs::{HiddenParams, SubsetBlock, VplBlock, VplMapBlo
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::hidden::LIGHTS_A_WORD;
 use crate::gpu::shader::techniques::interleaved_deferred::vpl_shadow::maps::COMP_VARIANTS;
 use crate::gpu::shader::variant;
-use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic};
+use crate::gpu::{Access, Bound, Buffer, Commands, Edge, Gpu, Image, Layers, Traffic, upload};
+use crate::memory::kinds::Use;
 use crate::passes::gbuffer::GBuffer;
 use crate::passes::mesh;
 use crate::passes::shadow_maps::CasterPipelines;
 use crate::plan::{Plan, Resources, Shape};
-use crate::resident::SceneGpu;
+use crate::resident::coarse::CoarseMeshes;
+use crate::resident::{Casters, SceneGpu};
 use crate::techniques::{Inputs, Run};
 use ash::vk;
 use std::cell::RefCell;
@@ -33,6 +35,9 @@ pub struct HiddenByMaps {
     pipelines: CasterPipelines,
     /// Maps of the run whose turn it is.
     draws: RefCell<MapDraws>,
+    /// What stands for triangles where a map's texels are large, and its index list.
+    coarse: CoarseMeshes,
+    indices: Option<Buffer>,
     depth: Image,
     views: Buffer,
     blocks: Buffer,
@@ -50,6 +55,10 @@ pub fn plan(plan: &mut Plan, maps: &VplMaps, vpl_count: u32) {
     plan.push(GROUP, MAPS, Shape::Image(maps.atlas.description()));
     if maps.index == MapIndex::CubeMap {
         index::plan(plan, &maps.atlas);
+    }
+    if let Some(bytes) = maps.coarse_bytes() {
+        let flags = vk::BufferUsageFlags::INDEX_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        plan.push(GROUP, INDICES, Shape::Buffer { bytes, flags, usage: Use::Device });
     }
     plan.buffer(GROUP, VIEWS, count(maps.atlas.face_count() as usize * size_of::<[[f32; 4]; 4]>()));
     plan.buffer(GROUP, VPL_MAPS, count(size_of::<VplMapBlock>()));
@@ -69,7 +78,15 @@ impl HiddenByMaps {
     ) -> Result<Self> {
         let Sought { choices, lights, least_squared } = *sought;
         let atlas = maps.atlas;
-        let draws = MapDraws::of(&maps, inputs.scene, inputs.view, scene, &lights.vpls)?;
+        let indices = maps.coarse_bytes().map(|_| resources.buffer(INDICES));
+        let coarse = match &indices {
+            Some(_) => CoarseMeshes::of(inputs.scene, scene),
+            None => CoarseMeshes::default(),
+        };
+        if let Some(indices) = indices.as_ref().filter(|_| !coarse.indices.is_empty()) {
+            upload::buffer(gpu, indices, bytemuck::cast_slice(&coarse.indices), Access::VertexRead)?;
+        }
+        let draws = MapDraws::of(&maps, inputs.scene, inputs.view, scene, &coarse, &lights.vpls)?;
         let (views, blocks) = (resources.buffer(VIEWS), resources.buffer(VPL_MAPS));
         draws.upload(gpu, &views, &blocks)?;
         let settings = &choices.shading;
@@ -91,6 +108,8 @@ impl HiddenByMaps {
         Ok(Self {
             pipelines: CasterPipelines::new(gpu, scene, maps.slope_bias_px)?,
             draws: RefCell::new(draws),
+            coarse,
+            indices,
             depth: resources.image(MAPS),
             views,
             blocks,
@@ -126,7 +145,10 @@ impl HiddenByMaps {
         let lights = || turn.first..turn.end;
         let drawn = || lights().flat_map(|light| &faces[light as usize]);
         let traffic = Traffic {
-            read_bytes: drawn().map(|face| mesh::depth_bytes(scene, &face.casters)).sum(),
+            read_bytes: drawn()
+                .flat_map(|face| [&face.casters.fine, &face.casters.coarse])
+                .map(|list| mesh::depth_bytes(scene, list))
+                .sum(),
             written_bytes: self.depth.description.bytes(),
             invocations: None,
         };
@@ -141,7 +163,13 @@ impl HiddenByMaps {
             let extent = self.depth.description.extent;
             let draw = |cmd: &mut Commands, light: u32, face: &FaceDraws| {
                 let view = light * face_count + face.index;
-                self.pipelines.draw(cmd, scene, &sets, view, &face.casters);
+                let Casters { fine, coarse } = &face.casters;
+                self.pipelines.draw(cmd, scene, &sets, view, fine);
+                if let Some(indices) = self.indices.as_ref().filter(|_| !coarse.opaque.is_empty()) {
+                    mesh::bind_indices(cmd, indices);
+                    self.pipelines.draw(cmd, scene, &sets, view, coarse);
+                    mesh::bind_indices(cmd, &scene.indices);
+                }
             };
             if atlas.shape == MapShape::Layers {
                 for light in lights() {
@@ -225,10 +253,12 @@ impl HiddenByMaps {
         let MapDraws { faces: of_lights, .. } = &*self.draws.borrow();
         let faces = || of_lights.iter().flatten();
         let triangles: u64 = faces().map(|face| face.casters.triangles_drawn()).sum();
+        let coarse: u64 = faces().map(|face| face.casters.coarse.triangles_drawn()).sum();
         BTreeMap::from([
             ("vpl_maps", of_lights.iter().filter(|faces| !faces.is_empty()).count() as f64),
             ("vpl_map_faces", faces().count() as f64),
             ("vpl_map_triangles_drawn", triangles as f64),
+            ("vpl_map_coarse_triangles_drawn", coarse as f64),
             ("vpl_map_turns", turns(Some(&self.maps), of_lights.len() as u32).count() as f64),
         ])
     }
@@ -237,7 +267,7 @@ impl HiddenByMaps {
     ///
     /// Errors: memory for the upload, more draws than can be recorded (exit code 4).
     pub fn begin_run(&self, run: &Run<'_>, vpls: &[VplBlock]) -> Result<()> {
-        let draws = MapDraws::of(&self.maps, run.scene, run.view, run.scene_gpu, vpls)?;
+        let draws = MapDraws::of(&self.maps, run.scene, run.view, run.scene_gpu, &self.coarse, vpls)?;
         draws.upload(run.gpu, &self.views, &self.blocks)?;
         self.draws.replace(draws);
         Ok(())

@@ -25,6 +25,13 @@ impl Reach {
         let (center, half) = (bounds.center() - self.position, (bounds.max - bounds.min) * 0.5 + slack_m);
         self.normals.iter().all(|normal| normal.dot(center) + normal.abs().dot(half) >= 0.0)
     }
+
+    /// The width of a face's texel where the box is nearest to the light, at least: a face is 90 degrees wide, and what is seen in its
+    /// corner is farther away than deep.
+    pub fn least_texel_m(&self, bounds: &Bounds, size_px: u32) -> f32 {
+        let nearest_m = self.position.distance(self.position.clamp(bounds.min, bounds.max));
+        2.0 * nearest_m / 3f32.sqrt() / size_px as f32
+    }
 }
 
 #[cfg(test)]
