@@ -65,6 +65,7 @@ pub mod lens;
 pub mod lights;
 pub mod memory;
 pub mod metrics;
+pub mod page;
 pub mod papers;
 pub mod passes;
 pub mod picture;

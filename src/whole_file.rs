@@ -47,6 +47,21 @@ pub fn write_whole<E: Display>(path: &Path, write: impl FnOnce(&mut BufWriter<Fi
     fresh_path.persist(&target).map_err(|error| failed(&error.error))
 }
 
+/// A document of ours has some kilobytes.
+const MAX_DOCUMENT_BYTES: u64 = 64 << 20;
+
+/// The text of a document that this program writes.
+///
+/// Errors: it cannot be read, or is longer than any of ours (exit code 2).
+pub fn read_document(path: &Path) -> Result<String> {
+    let failed = |why: &dyn Display| Error::request(format!("cannot read {}: {why}", path.display()));
+    let bytes = path.metadata().map_err(|error| failed(&error))?.len();
+    if bytes > MAX_DOCUMENT_BYTES {
+        return Err(failed(&format!("it has {bytes} bytes; up to {MAX_DOCUMENT_BYTES} are read")));
+    }
+    std::fs::read_to_string(path).map_err(|error| failed(&error))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 //! each combination of the others. Seeds are no combinations: what a setting does to an error is its mean over them.
 
 use super::row::BenchRow;
+use super::stats::straight;
 use super::sweep::Axis;
 use crate::error::{Error, Result};
 use serde_json::{Map, Value, json};
@@ -61,9 +62,9 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// For each combination of the other axes but the seed: its errors by the values of `key`, where they are known, and the exponents.
-pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
+pub fn rates<'a>(key: &str, axes: &[Axis], rows: impl IntoIterator<Item = &'a BenchRow>) -> Vec<Rate> {
     let mut rates: Vec<Rate> = Vec::new();
-    for row in rows.iter().filter(|row| row.was_measured()) {
+    for row in rows.into_iter().filter(|row| row.was_measured()) {
         let of = row.others(&[key, "seed"], axes);
         let Some((value, errors)) = number(&row.asked_text(key)).zip(row.best_known_errors()) else { continue };
         let errors = [errors.rmse, errors.flip];
@@ -87,17 +88,12 @@ pub fn rates(key: &str, axes: &[Axis], rows: &[BenchRow]) -> Vec<Rate> {
 
 /// The slope of the straight line through logarithms, by least squares; points at 0 are passed over.
 fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let logs: Vec<(f64, f64)> = points
+    let logs: Vec<[f64; 2]> = points
         .iter()
         .filter(|(value, error)| *value > 0.0 && *error > 0.0 && error.is_finite())
-        .map(|(value, error)| (value.ln(), error.ln()))
+        .map(|(value, error)| [value.ln(), error.ln()])
         .collect();
-    let count = logs.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
-    let [x, y] = [mean(|log| log.0), mean(|log| log.1)];
-    let spread: f64 = logs.iter().map(|log| (log.0 - x).powi(2)).sum();
-    let together: f64 = logs.iter().map(|log| (log.0 - x) * (log.1 - y)).sum();
-    (spread > 0.0).then(|| together / spread)
+    straight(&logs).map(|[_, slope]| slope)
 }
 
 /// The rates as `summary.json` has them.

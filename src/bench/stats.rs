@@ -45,6 +45,16 @@ pub fn median(samples: &[f64]) -> f64 {
     spread::median(&sorted)
 }
 
+/// The straight line through points (x, y) by least squares: its height at 0 and its slope. None through fewer than two places.
+pub fn straight(points: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+    let [x, y] = [mean(0), mean(1)];
+    let spread: f64 = points.iter().map(|point| (point[0] - x).powi(2)).sum();
+    let together: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
+    let slope = (spread > 0.0).then(|| together / spread)?;
+    Some([y - slope * x, slope])
+}
+
 /// 97.5 % quantile of Student's t; beyond 30 degrees of freedom within 2 % of the normal one.
 fn t_quantile(freedom: usize) -> f64 {
     const TABLE: [f64; 30] = [
@@ -57,6 +67,14 @@ fn t_quantile(freedom: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_goes_through_its_points() {
+        let [height, slope] = straight(&[[1.0, 12.0], [3.0, 18.0], [5.0, 24.0]]).unwrap();
+        assert!((height - 9.0).abs() < 1e-12 && (slope - 3.0).abs() < 1e-12, "{height} {slope}");
+        assert_eq!(straight(&[[1.0, 2.0], [1.0, 3.0]]), None);
+        assert_eq!(straight(&[]), None);
+    }
 
     #[test]
     fn equal_pairs_have_a_ratio_without_width() {

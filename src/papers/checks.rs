@@ -110,14 +110,12 @@ fn every_number_and_picture_of_a_recipe_is_left_by_one_of_its_steps() {
             assert!(recipe.steps.iter().any(is_left), "{name}: no step leaves {}", picture.file);
         }
         for step in &recipe.steps {
-            if let Verb::Compare { files } = &step.verb {
-                for file in files {
-                    let stem = file.rsplit_once('.').unwrap();
-                    let is_of = |step: &Step| {
-                        step.verb == Verb::Render { extension: if stem.1 == "exr" { "exr" } else { "png" } }
-                    };
-                    assert!(recipe.steps.iter().any(|step| step.name == stem.0 && is_of(step)), "{name}: {file}");
-                }
+            for file in step.earlier_files() {
+                let stem = file.rsplit_once('.').unwrap();
+                let is_of =
+                    |step: &Step| step.verb == Verb::Render { extension: if stem.1 == "exr" { "exr" } else { "png" } };
+                let mut before = recipe.steps.iter().take_while(|other| other.name != step.name);
+                assert!(before.any(|step| step.name == stem.0 && is_of(step)), "{name}: {file}");
             }
         }
     }

@@ -50,7 +50,7 @@ pub struct Step {
     pub verb: Verb,
     /// A built-in scene or a file; None where the command takes none.
     pub scene: Option<String>,
-    /// What follows, without what says where results go.
+    /// What follows, without what says where results go; `@FILE` is a file of an earlier step.
     pub words: Vec<String>,
 }
 
@@ -61,8 +61,8 @@ pub enum Verb {
     Bench { what: String, rounds: u32 },
     /// `render`: a picture of this extension, and its report.
     Render { extension: &'static str },
-    /// `compare` of two files: its document.
-    Compare { files: [String; 2] },
+    /// `compare` of two files: its document; with the spectrum of what they differ by, and a plot of it, where it is asked for.
+    Compare { files: [String; 2], has_spectrum: bool },
     /// `memory`: its document.
     Memory,
     /// `sampling inspect` of a pattern: pictures of its samples and of its spectrum, and its document.
@@ -190,13 +190,25 @@ impl Step {
 
     /// `compare A B`, files of earlier steps.
     pub fn compare(name: impl Into<String>, files: [&str; 2]) -> Self {
-        let verb = Verb::Compare { files: files.map(str::to_owned) };
+        let verb = Verb::Compare { files: files.map(str::to_owned), has_spectrum: false };
+        Self { name: name.into(), verb, scene: None, words: Vec::new() }
+    }
+
+    /// `compare A B --spectrum NAME.svg`, files of earlier steps.
+    pub fn spectrum(name: impl Into<String>, files: [&str; 2]) -> Self {
+        let verb = Verb::Compare { files: files.map(str::to_owned), has_spectrum: true };
         Self { name: name.into(), verb, scene: None, words: Vec::new() }
     }
 
     /// `sampling inspect PATTERN`, into `NAME.png`, `NAME.spectrum.png` and `NAME.spectrum.svg`.
     pub fn pattern(name: impl Into<String>, pattern: &str) -> Self {
         Self { name: name.into(), verb: Verb::Pattern { pattern: pattern.to_owned() }, scene: None, words: Vec::new() }
+    }
+
+    /// Files of earlier steps that its command names.
+    pub fn earlier_files(&self) -> impl Iterator<Item = &str> {
+        let compared = if let Verb::Compare { files, .. } = &self.verb { files.as_slice() } else { &[] };
+        compared.iter().map(String::as_str).chain(self.words.iter().filter_map(|word| word.strip_prefix('@')))
     }
 
     /// `memory SCENE WORDS --json`.

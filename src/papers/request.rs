@@ -65,12 +65,12 @@ impl Step {
         let mut command: Vec<String> = match &self.verb {
             Verb::Bench { what, .. } => vec!["bench".to_owned(), what.clone()],
             Verb::Render { .. } => vec!["render".to_owned()],
-            Verb::Compare { files } => vec!["compare".to_owned(), file(&files[0]), file(&files[1])],
+            Verb::Compare { files, .. } => vec!["compare".to_owned(), file(&files[0]), file(&files[1])],
             Verb::Memory => vec!["memory".to_owned()],
             Verb::Pattern { pattern } => ["sampling", "inspect", pattern].map(str::to_owned).to_vec(),
         };
         command.extend(self.scene_of(request).map(str::to_owned));
-        command.extend(self.words.iter().cloned());
+        command.extend(self.words.iter().map(|word| word.strip_prefix('@').map_or_else(|| word.clone(), file)));
         for (key, value) in request.settings.iter().filter(|(key, _)| self.reads(key)) {
             set(&mut command, &format!("--{key}"), value);
         }
@@ -97,7 +97,13 @@ impl Step {
                 }
                 command.push("--json".to_owned());
             }
-            Verb::Compare { .. } | Verb::Memory => command.push("--json".to_owned()),
+            Verb::Compare { has_spectrum, .. } => {
+                if *has_spectrum {
+                    command.extend(["--spectrum".to_owned(), file(&format!("{name}.svg"))]);
+                }
+                command.push("--json".to_owned());
+            }
+            Verb::Memory => command.push("--json".to_owned()),
         }
         command
     }

@@ -11,7 +11,7 @@ use crate::bench::rows_file::RowsFile;
 use crate::error::{Error, Result};
 use crate::interrupt;
 use crate::progress::say;
-use crate::whole_file::write_whole;
+use crate::whole_file::{read_document as read, write_whole};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -26,9 +26,6 @@ const TICK: Duration = Duration::from_millis(20);
 
 /// What a process that has been told to stop may take for it. Rows and files are written whole: it loses what it would have lost.
 const PATIENCE: Duration = Duration::from_secs(5);
-
-/// A document has some kilobytes.
-const MAX_DOCUMENT_BYTES: u64 = 64 << 20;
 
 /// What a step's process leaves when it fails.
 struct Failure {
@@ -54,7 +51,13 @@ fn left(step: &Step, request: &Request, commit: &str) -> Result<Left> {
     let command = step.command(request);
     let files = Files::of(step, folder);
     let driver = DRIVERS.iter().filter_map(|name| Some(format!("{name}={}", std::env::var(name).ok()?)));
-    let key = driver.chain([commit.to_owned()]).chain(command.iter().cloned()).collect::<Vec<_>>().join("\n");
+    // What is made of other steps' files is of their commands too.
+    let earlier = step.earlier_files().filter_map(|file| {
+        let (stem, _) = file.rsplit_once('.')?;
+        read(&folder.join(format!("{stem}.command"))).ok()
+    });
+    let own = driver.chain([commit.to_owned()]).chain(command.iter().cloned());
+    let key = own.chain(earlier).collect::<Vec<_>>().join("\n");
     let is_begun = !request.is_fresh && read(&files.key).is_ok_and(|there| there == key);
     if is_begun && files.is_done() {
         return files.read();
@@ -190,16 +193,4 @@ impl Files {
             }
         }
     }
-}
-
-/// A text that a step has written.
-///
-/// Errors: it cannot be read, or is longer than any of ours (exit code 2).
-fn read(path: &Path) -> Result<String> {
-    let failed = |why: &dyn std::fmt::Display| Error::request(format!("cannot read {}: {why}", path.display()));
-    let bytes = path.metadata().map_err(|error| failed(&error))?.len();
-    if bytes > MAX_DOCUMENT_BYTES {
-        return Err(failed(&format!("it has {bytes} bytes; up to {MAX_DOCUMENT_BYTES} are read")));
-    }
-    std::fs::read_to_string(path).map_err(|error| failed(&error))
 }

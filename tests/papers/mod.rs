@@ -1,7 +1,7 @@
 //! `reproduce` from outside: what is listed, what is found, what is taken from an earlier run, what fails. Never how long
 //! anything takes.
 
-mod page;
+pub mod page;
 
 use crate::support::benched::{lines, read};
 use crate::support::program::Program;

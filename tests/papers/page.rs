@@ -49,7 +49,7 @@ found.errors = window.errors;
 "#;
 
 /// What the page of a file says in a frame of this width.
-fn shown(program: &Program, page: &str, browser: &Path, width: u32) -> Value {
+pub fn shown(program: &Program, page: &str, browser: &Path, width: u32) -> Value {
     let html = std::fs::read_to_string(program.path(page)).unwrap();
     assert!(
         !html.contains("http://") && !html.contains("src=\"//") && !html.contains("https://"),

@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["cache_folder", "choice", "error", "progress", "svg", "units"],
+    &["cache_folder", "choice", "error", "page", "progress", "svg", "units"],
     &["caps", "interrupt", "whole_file"],
     &["sampling"],
     &["memory", "picture", "volume"],

@@ -1,5 +1,6 @@
 //! Dubla, Debattista and Chalmers 2009: adaptive interleaved sampling.
 
+mod costs;
 mod figures;
 mod tables;
 
@@ -22,5 +23,6 @@ pub const PAPER: Paper = Paper {
         figures::FIGURE_8,
         figures::FAILURES,
         figures::FLICKER,
+        costs::SECTION_3,
     ],
 };

@@ -59,7 +59,7 @@ fn figure_1(effort: Effort) -> Recipe {
     recipe
 }
 
-fn mean(all: &[f64]) -> f64 {
+pub fn mean(all: &[f64]) -> f64 {
     all.iter().sum::<f64>() / all.len() as f64
 }
 

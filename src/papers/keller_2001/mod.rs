@@ -1,6 +1,8 @@
 //! Keller and Heidrich 2001: interleaved sampling.
 
 mod figures;
+mod moire;
+mod samplers;
 mod volumes;
 
 use super::item::Paper;
@@ -11,6 +13,8 @@ pub const PAPER: Paper = Paper {
     title: "Interleaved Sampling",
     venue: "Eurographics Workshop on Rendering 2001, pages 269 to 276",
     items: &[
+        moire::SECTION_2_2,
+        samplers::SAMPLERS_BY_EFFECT,
         figures::FIGURE_1,
         figures::FIGURE_2,
         volumes::FIGURE_3,
@@ -18,5 +22,6 @@ pub const PAPER: Paper = Paper {
         volumes::FIGURE_5,
         volumes::FIGURE_6,
         volumes::SECTION_3_3,
+        samplers::SAMPLERS_ELSEWHERE,
     ],
 };

@@ -17,8 +17,12 @@ pub const FIGURE_3: Item = Item {
 const SLICED: &str = "--technique interleaved_sampling --effect volume --samples 1";
 
 /// Name, and what fills the frame.
-const VOLUMES: [(&str, &str); 2] =
-    [("head", "--volume head --transfer tissue"), ("marschner-lobb", "--volume marschner-lobb --transfer shells")];
+const VOLUMES: [(&str, &str); 4] = [
+    ("head-tissue", "--volume head --transfer tissue"),
+    ("head-ramp", "--volume head --transfer ramp"),
+    ("marschner-lobb-shells", "--volume marschner-lobb --transfer shells"),
+    ("marschner-lobb-heat", "--volume marschner-lobb --transfer heat"),
+];
 
 const PLANES: [&str; 3] = ["20", "60", "120"];
 

@@ -2,6 +2,7 @@
 
 use super::{dots, pictures};
 use crate::error::Result;
+use crate::page;
 use crate::papers::columns::{columns, missing};
 use crate::papers::outcome::{Outcome, TableOutcome};
 use maud::{Markup, html};
@@ -52,23 +53,14 @@ pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
 /// A table whose head sorts it.
 fn table(table: &TableOutcome) -> Markup {
     let columns = columns(table);
-    html! {
-        div.scroll {
-            table {
-                thead {
-                    tr { @for column in &columns { th scope="col" { button type="button" { (column.title) } } } }
-                }
-                tbody {
-                    @for cell in &table.cells {
-                        tr {
-                            @for column in &columns {
-                                @let value = column.value.and_then(|value| value(cell));
-                                td class=[column.value.map(|_| "number")] data-value=[value] { ((column.text)(cell)) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
+    let titles: Vec<(&str, bool)> =
+        columns.iter().map(|column| (column.title.as_str(), column.value.is_some())).collect();
+    let row = |cell| {
+        let cells = columns.iter().map(|column| {
+            let text = (column.text)(cell);
+            (html! { (text) }, column.value.and_then(|value| value(cell)))
+        });
+        cells.collect()
+    };
+    page::table(&titles, &table.cells.iter().map(row).collect::<Vec<_>>())
 }

@@ -6,8 +6,9 @@ mod pictures;
 
 use super::outcome::Outcome;
 use crate::error::Result;
+use crate::page;
 use crate::whole_file::write_whole;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -19,39 +20,24 @@ pub type Made = (Outcome, PathBuf);
 /// Errors: a picture cannot be read, or the page cannot be written (exit code 2).
 pub fn write(path: &Path, made: &[Made]) -> Result<()> {
     let items = made.iter().map(|(outcome, folder)| item::markup(outcome, folder)).collect::<Result<Vec<_>>>()?;
-    let text = page(made, &items).into_string();
+    let text = text(made, &items);
     write_whole(path, |out| out.write_all(text.as_bytes()))
 }
 
-fn page(made: &[Made], items: &[Markup]) -> Markup {
+fn text(made: &[Made], items: &[Markup]) -> String {
     let title = match made {
         [(only, _)] => format!("{}/{}: {}", only.paper, only.item, only.title),
         _ => "Published tables and figures, made again".to_owned(),
     };
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (title) }
-                style { (PreEscaped(include_str!("page.css"))) }
-            }
-            body {
-                main {
-                    h1 { (title) }
-                    p.note {
-                        "Made by " code { "quincunx reproduce" } ". Published numbers are hollow in plots, ours are filled, with their bounds: "
-                        "the least and the greatest of times, 95 % intervals of ratios."
-                    }
-                    @if made.len() > 1 { (contents(made)) }
-                    @for item in items { (item) }
-                }
-                script { (PreEscaped(include_str!("page.js"))) }
-            }
+    let body = html! {
+        p.note {
+            "Made by " code { "quincunx reproduce" } ". Published numbers are hollow in plots, ours are filled, with their bounds: "
+            "the least and the greatest of times, 95 % intervals of ratios."
         }
-    }
+        @if made.len() > 1 { (contents(made)) }
+        @for item in items { (item) }
+    };
+    page::document(&title, &body)
 }
 
 /// Links to the items, with their verdicts.
