@@ -364,6 +364,15 @@ pub struct Heap {
     pub device_local: bool,
 }
 
+/// What a driver says of a heap at a moment (VK_EXT_memory_budget).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct HeapBudget {
+    /// What this process may take of it, by the driver's estimate.
+    pub budget_bytes: u64,
+    /// What this process has taken of it.
+    pub usage_bytes: u64,
+}
+
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MemoryType {
     /// Index into `Caps::heaps`.

@@ -5,10 +5,13 @@ use super::{frames_args, job_args, progress, reference_args};
 use crate::cli::output::{print, print_text};
 use crate::continuation::Continuation;
 use crate::error::{Error, Result};
-use crate::job::Job;
+use crate::job::{Job, require_folder};
 use crate::progress::say;
+use crate::report::trace;
 use crate::sequence::Frames;
+use crate::whole_file::write_whole;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use std::io::Write;
 use std::path::PathBuf;
 
 /// The verb with its arguments.
@@ -26,6 +29,9 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                     .help("File to write the picture to; default: SCENE-TECHNIQUE.png in the current folder"),
             )
             .arg(path("report", "FILE.json").help("File to write the report to: settings, times, memory, hashes"))
+            .arg(path("trace-events", "FILE.json").conflicts_with("frames").help(
+                "File to write the passes to as events that Chrome and Perfetto draw, with memory as a counter; implies --profile",
+            ))
             .arg(
                 Arg::new("aov")
                     .long("aov")
@@ -63,12 +69,17 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let earlier = matches.get_one::<PathBuf>("continue");
     job.continuation = earlier.map(|path| Continuation::read(path, job.values.extent("size"))).transpose()?;
     job.reference = reference_args::asked(matches)?;
-    job.profile = matches.get_flag("profile");
+    let trace = matches.get_one::<PathBuf>("trace-events");
+    trace.map_or(Ok(()), |path| require_folder(path))?;
+    job.profile = matches.get_flag("profile") || trace.is_some();
     job.statistics = matches.get_flag("statistics");
     if let Some(frames) = frames_args::asked(matches)? {
         return run_sequence(&job, &frames, matches);
     }
     let outcome = job.run()?;
+    if let Some(path) = trace {
+        write_whole(path, |out| writeln!(out, "{}", trace::document(&outcome.report)))?;
+    }
     if matches.get_flag("json") {
         print(&format!("{:#}\n", outcome.report.json()))?;
     } else {

@@ -3,7 +3,7 @@
 use super::calibration::Calibration;
 use super::pipeline_store::PipelineStore;
 use super::{probe, validation};
-use crate::caps::{Caps, Identity};
+use crate::caps::{Caps, HeapBudget, Identity};
 use crate::error::{Error, Result};
 use crate::memory::{Memory, Strategy};
 use ash::vk;
@@ -396,6 +396,11 @@ impl Gpu {
             // SAFETY: as above.
             None => unsafe { names.cmd_end_debug_utils_label(buffer) },
         }
+    }
+
+    /// What the driver itself says of its heaps now; None: it says nothing (VK_EXT_memory_budget).
+    pub fn heap_budgets(&self) -> Option<Vec<HeapBudget>> {
+        self.caps.features.memory_budget.then(|| probe::heap_budgets(&self.instance, self.physical))
     }
 
     /// The log that outlives the device, for what is said while it closes; None without `validate`.

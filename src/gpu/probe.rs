@@ -1,6 +1,6 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
-use crate::caps::{Caps, ConservativeRules, Features, Formats, Heap, Identity, Limits, MemoryType};
+use crate::caps::{Caps, ConservativeRules, Features, Formats, Heap, HeapBudget, Identity, Limits, MemoryType};
 use ash::vk;
 use std::ffi::CStr;
 
@@ -14,6 +14,17 @@ pub fn queue_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> O
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
     let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
     families.iter().position(|family| family.queue_flags.contains(needed)).map(|index| index as u32)
+}
+
+/// What the driver of a device that has VK_EXT_memory_budget says of its heaps now.
+pub fn heap_budgets(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Vec<HeapBudget> {
+    let mut budget = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();
+    let mut memory = vk::PhysicalDeviceMemoryProperties2::default().push_next(&mut budget);
+    // SAFETY: a live instance and one of its physical devices, which has the extension.
+    unsafe { instance.get_physical_device_memory_properties2(physical, &mut memory) };
+    let heap_count = memory.memory_properties.memory_heap_count as usize;
+    let heaps = budget.heap_budget.into_iter().zip(budget.heap_usage).take(heap_count);
+    heaps.map(|(budget_bytes, usage_bytes)| HeapBudget { budget_bytes, usage_bytes }).collect()
 }
 
 /// Names of the device's extensions.

@@ -52,22 +52,36 @@ impl Plan {
         touches.fold(AccessSet::UNTOUCHED, |known, touch| known.after(touch.access))
     }
 
-    /// Greatest sum of `bound_bytes` (one a resource, in order) over the passes, `kept_bytes` more in each. What shares its
+    /// Sums of `bound_bytes` (one a resource, in order) in each pass, one at least, `kept_bytes` more in each. What shares its
     /// bytes counts while it lives; what has bytes of its own holds them in every pass.
-    pub fn peak(&self, bound_bytes: &[u64], kept_bytes: u64, sharing: &Sharing) -> Peak {
-        let live = |pass: usize| {
-            let lives = |resource: &usize| {
-                sharing.part(*resource).is_none()
-                    || self.lifetime(*resource).is_none_or(|lifetime| lifetime.first <= pass && pass <= lifetime.last)
+    pub fn held_bytes(&self, bound_bytes: &[u64], kept_bytes: u64, sharing: &Sharing) -> Vec<u64> {
+        self.sums(bound_bytes, kept_bytes, |resource| sharing.part(resource).is_none())
+    }
+
+    /// The same of what lives in each pass.
+    pub fn live_bytes(&self, bound_bytes: &[u64], kept_bytes: u64) -> Vec<u64> {
+        self.sums(bound_bytes, kept_bytes, |_| false)
+    }
+
+    fn sums(&self, bound_bytes: &[u64], kept_bytes: u64, is_always: impl Fn(usize) -> bool) -> Vec<u64> {
+        let lifetimes: Vec<Option<Lifetime>> = (0..self.resources.len())
+            .map(|resource| self.lifetime(resource).filter(|_| !is_always(resource)))
+            .collect();
+        let in_pass = |pass: usize| {
+            let lives = |lifetime: &Option<Lifetime>| {
+                lifetime.is_none_or(|lifetime| lifetime.first <= pass && pass <= lifetime.last)
             };
-            kept_bytes + (0..self.resources.len()).filter(lives).map(|resource| bound_bytes[resource]).sum::<u64>()
+            let living = lifetimes.iter().zip(bound_bytes).filter(|(lifetime, _)| lives(lifetime));
+            kept_bytes + living.map(|(_, bytes)| bytes).sum::<u64>()
         };
+        (0..self.passes.len().max(1)).map(in_pass).collect()
+    }
+
+    /// The greatest of `held_bytes`.
+    pub fn peak(&self, bound_bytes: &[u64], kept_bytes: u64, sharing: &Sharing) -> Peak {
+        let held = self.held_bytes(bound_bytes, kept_bytes, sharing);
         // The first of equals: a later pass must need more to be called the peak.
-        let (pass, bytes) = (0..self.passes.len().max(1))
-            .map(|pass| (pass, live(pass)))
-            .rev()
-            .max_by_key(|(_, bytes)| *bytes)
-            .expect("at least one");
+        let (pass, bytes) = held.into_iter().enumerate().rev().max_by_key(|(_, bytes)| *bytes).expect("at least one");
         Peak { bytes, pass: self.pass_name(pass).to_owned() }
     }
 }
@@ -116,6 +130,9 @@ mod tests {
         for mode in [Mode::Greedy, Mode::Optimal] {
             assert_eq!(peak(mode), Peak { bytes: 10 + 100 + 2000 + 4000, pass: "third".to_owned() });
         }
+        assert_eq!(plan.live_bytes(&bytes, 10), [1110, 3110, 6110, 6110]);
+        let held = |mode| plan.held_bytes(&bytes, 10, &Sharing::new(&plan, rules, &limits, mode));
+        assert_eq!(held(Mode::Off), [7110; 4]);
         // Nobody gives bytes back: every pass has all of them.
         assert_eq!(peak(Mode::Off), Peak { bytes: 10 + 100 + 1000 + 2000 + 4000, pass: "first".to_owned() });
     }

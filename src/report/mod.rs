@@ -7,3 +7,4 @@ pub mod nullable;
 pub mod run;
 pub mod spread;
 mod text;
+pub mod trace;

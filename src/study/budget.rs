@@ -21,7 +21,7 @@ const MIB: u64 = 1 << 20;
 
 /// What is on its way between host and device beside the resources themselves.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Copies {
+pub(super) enum Copies {
     /// To the scene's resources, which the host always fills.
     Scene,
     /// To every resource that the host may fill, and from those that are read back: what a render needs at most.
@@ -68,7 +68,7 @@ fn advised(refused: Error, enough: &str) -> Error {
 /// Places everything; the greatest sum of memory blocks, bytes.
 ///
 /// Errors: the budget is spent (exit code 4).
-fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, copies: Copies) -> Result<u64> {
+pub(super) fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, copies: Copies) -> Result<u64> {
     let strategy = job.values.choice("allocation");
     let Driver { caps, requirements } = driver;
     let mut endless = caps.clone();

@@ -3,9 +3,12 @@
 
 mod budget;
 mod driver;
+pub mod heaps;
+pub mod least;
+pub mod page;
 
 use crate::bvh::LazyBvh;
-use crate::caps::Caps;
+use crate::caps::{Caps, HeapBudget};
 use crate::error::Result;
 use crate::gpu::commands::Submits;
 use crate::job::{Job, fail_on_validation};
@@ -21,6 +24,10 @@ pub struct Study {
     /// Name of the device, or of the driver whose rules were applied.
     pub device: String,
     pub scene: String,
+    /// What that device, or that driver, can do.
+    pub caps: Caps,
+    /// What the driver said of its heaps while everything was there; None where it says nothing, or nothing was made.
+    pub driver_heaps: Option<Vec<HeapBudget>>,
     pub table: MemoryTable,
     /// Nobody has measured how the driver rounds sizes, and none are rounded.
     pub is_unrounded: bool,
@@ -45,7 +52,15 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
         Some(budget_bytes) => budget::require_fitting(&plans, job, scene, &bvh, driver, budget_bytes),
     };
     let is_unrounded = caps.layout.is_none();
-    Ok(Study { device: caps_name.to_owned(), scene: name, table, is_unrounded, budget })
+    Ok(Study {
+        device: caps_name.to_owned(),
+        scene: name,
+        caps: caps.clone(),
+        driver_heaps: None,
+        table,
+        is_unrounded,
+        budget,
+    })
 }
 
 /// Resolved values under `caps` of the settings of `job` whose text does not say all, such as `auto`: the host's part
@@ -70,7 +85,9 @@ pub fn made(job: &Job) -> Result<Study> {
     let snapshot = session.gpu.memory.snapshot();
     let table = session.memory_table(&renderer, Some(&snapshot))?;
     let device = session.gpu.caps.identity.name.clone();
-    let study = Study { device, scene: session.scene.name.clone(), table, is_unrounded: false, budget: Ok(()) };
+    let (scene, caps) = (session.scene.name.clone(), session.gpu.caps.clone());
+    let driver_heaps = session.gpu.heap_budgets();
+    let study = Study { device, scene, caps, driver_heaps, table, is_unrounded: false, budget: Ok(()) };
     let log = session.gpu.validation_log();
     drop((renderer, session));
     fail_on_validation(log.as_deref())?;

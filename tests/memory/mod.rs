@@ -1,6 +1,7 @@
 //! The ledger against a counter of its own around vkAllocateMemory and vkFreeMemory, to the byte.
 
 mod budget;
+mod study;
 
 use crate::support::choices::{words, words_but};
 use crate::support::counted::{begin, counted, counted_device, counter, live_bytes};

@@ -1,5 +1,7 @@
 //! Reports and rows are values: what a program reads from their JSON is what was written.
 
+mod trace;
+
 use crate::support::benched::{bench, lines};
 use crate::support::program::Program;
 use quincunx::bench::rays::report::RaysRow;

@@ -1,146 +1,28 @@
 //! The memory table: every resource with its bytes asked for and bound, its memory type, its lifetime, and the sums.
 //! Made from plans; where resources were made, the ledger adds where each lies.
 
+pub mod difference;
+pub mod drawing;
+mod rows;
+mod text;
+pub mod vma;
+
+pub use rows::{ArenaPlace, ArenaRow, MemoryReport, MemoryRow, MemorySums, PassBytes, Waste};
+
 use crate::error::Result;
 use crate::gpu::ImageDescription;
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::ledger::{BlockState, Entry, Snapshot};
 use crate::plan::{Peak, Plan, Planned, PlannedArena, Requirements, Shape, Sharing};
-use crate::units::Bytes;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt::Write;
-
-/// One resource.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MemoryRow {
-    /// `technique.pass.resource`, or `scene.resource`.
-    pub name: String,
-    /// What it is for, such as `gbuffer`.
-    pub group: String,
-    /// Bytes asked for, by arithmetic.
-    pub bytes: u64,
-    /// Bytes that the driver requires.
-    pub bound_bytes: u64,
-    /// Bytes; a power of two.
-    pub alignment_bytes: u64,
-    /// Bytes lost between its end and the next multiple of its alignment.
-    pub alignment_waste_bytes: u64,
-    /// Index of its memory type.
-    pub memory_type: u32,
-    /// Why that type.
-    pub reason: Cow<'static, str>,
-    /// First pass that touches it; None, and null in JSON: it is kept from frame to frame.
-    pub first_pass: Option<String>,
-    /// Last pass that touches it; None as `first_pass`.
-    pub last_pass: Option<String>,
-    /// Vulkan's name of the format; None of buffers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub format: Option<String>,
-    /// `WIDTHxHEIGHT`, pixels; None of buffers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub extent: Option<String>,
-    /// Layers; None of buffers and of images without layers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layers: Option<u32>,
-    /// Samples a pixel, 2 or more; None of all that has one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub samples: Option<u32>,
-    /// Bytes that a frame has touched; None where they were not counted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub touched_bytes: Option<u64>,
-    /// Where it lies among others; None where its bytes are its own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub arena: Option<ArenaPlace>,
-    /// Index of its memory block; None where it was planned alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub memory_block: Option<u32>,
-    /// Bytes from the memory block's start; None where it was planned alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub offset: Option<u64>,
-    /// Its kind in words, for tables; JSON does not have it.
-    #[serde(skip)]
-    pub kind: String,
-}
-
-/// The place of a resource that shares bytes with others.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ArenaPlace {
-    /// Index into `MemoryReport::arenas`.
-    pub index: usize,
-    /// Bytes from the arena's start.
-    pub offset: u64,
-    /// Names of resources that lie in some of the same bytes in other passes.
-    pub shares_with: Vec<String>,
-}
-
-/// A range whose parts share bytes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ArenaRow {
-    pub bytes: u64,
-    /// Bytes; a power of two.
-    pub alignment_bytes: u64,
-    /// How many resources lie in it.
-    pub parts: usize,
-    /// Sum of their bound bytes.
-    pub parts_bytes: u64,
-    /// Whether no placement is smaller.
-    pub proven_optimal: bool,
-}
-
-/// The sums of a table, all in bytes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MemorySums {
-    /// Asked for by the technique.
-    pub planned_bytes: u64,
-    /// Required by the driver; None in rows of before it was written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub allocated_bytes: Option<u64>,
-    /// Saved by sharing; None as `allocated_bytes`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub aliased_bytes: Option<u64>,
-    /// The most alive at once.
-    pub peak_bytes: u64,
-    /// Pass in which that is; None as `allocated_bytes`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_pass: Option<String>,
-    /// Bound bytes by group; None as `allocated_bytes`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub groups: Option<BTreeMap<String, u64>>,
-    /// Touched by the last frame, of the resources that it counts; None where it counts none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub touched_bytes: Option<u64>,
-    /// Planned bytes of the same resources.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub touched_of_bytes: Option<u64>,
-    /// Touched bytes by group.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub touched_groups: Option<BTreeMap<String, u64>>,
-}
-
-/// A report's `memory`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MemoryReport {
-    #[serde(flatten)]
-    pub sums: MemorySums,
-    pub arenas: Vec<ArenaRow>,
-    /// The scene's resources, then the frame's, then what no plan knows of.
-    pub resources: Vec<MemoryRow>,
-    /// Bytes that vkAllocateMemory was asked for; None where nothing was made.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub memory_block_bytes: Option<u64>,
-    /// None where nothing was made.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub memory_blocks: Option<Vec<BlockState>>,
-}
 
 /// The memory of one technique on one scene.
 #[derive(Clone, Debug)]
 pub struct MemoryTable {
     rows: Vec<MemoryRow>,
     peak: Peak,
+    passes: Vec<PassBytes>,
     sharing: Sharing,
     /// Where it was made: what the driver was asked for, and each memory block.
     made: Option<(u64, Vec<BlockState>)>,
@@ -176,9 +58,17 @@ impl MemoryTable {
             rows[index].memory_block = Some(entry.memory_block);
             rows[index].offset = Some(entry.offset);
         }
+        let held = frame.held_bytes(&bound, kept_bytes, &sharing);
+        let live = frame.live_bytes(&bound, kept_bytes);
+        let passes = held.into_iter().zip(live).enumerate().map(|(pass, (held_bytes, live_bytes))| PassBytes {
+            pass: frame.pass_name(pass).to_owned(),
+            live_bytes,
+            held_bytes,
+        });
         Ok(Self {
             rows,
             peak: frame.peak(&bound, kept_bytes, &sharing),
+            passes: passes.collect(),
             sharing,
             made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
         })
@@ -229,11 +119,25 @@ impl MemoryTable {
         }
     }
 
+    fn waste(&self) -> Waste {
+        let sum = |bytes: fn(&MemoryRow) -> u64| self.rows.iter().map(bytes).sum();
+        let fullest = self.passes.iter().max_by_key(|pass| (pass.live_bytes, pass.held_bytes));
+        Waste {
+            // A driver may need less than the arithmetic has, of a depth buffer for one.
+            padding_bytes: sum(|row| row.bound_bytes.saturating_sub(row.bytes)),
+            alignment_bytes: sum(|row| row.alignment_waste_bytes),
+            idle_bytes: fullest.map_or(0, |pass| pass.held_bytes - pass.live_bytes),
+            free_bytes: self.made.as_ref().map(|(_, blocks)| blocks.iter().map(|block| block.free_bytes).sum()),
+        }
+    }
+
     /// The report's `memory`.
     pub fn report(&self) -> MemoryReport {
         MemoryReport {
             sums: self.sums(),
             arenas: self.sharing.arenas.iter().map(arena_row).collect(),
+            passes: self.passes.clone(),
+            waste: Some(self.waste()),
             resources: self.rows.clone(),
             memory_block_bytes: self.made.as_ref().map(|(bytes, _)| *bytes),
             memory_blocks: self.made.as_ref().map(|(_, blocks)| blocks.clone()),
@@ -245,67 +149,10 @@ impl MemoryTable {
         serde_json::to_value(self.report()).expect("its keys are texts")
     }
 
-    /// What a person reads: a line a resource, then the sums.
+    /// What a person reads: a line a resource, the sums, and how many bytes there are in each pass.
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        self.write(&mut text).expect("writing to a string");
-        text
+        self.report().text()
     }
-
-    fn write(&self, text: &mut String) -> std::fmt::Result {
-        let widest = self.rows.iter().map(|row| row.name.len()).max().unwrap_or(0);
-        writeln!(
-            text,
-            "{:<widest$}  {:>12} {:>12} {:>6} {:>6} {:>5}  {:<34} lives in",
-            "resource", "asked, B", "bound, B", "align", "waste", "type", "what"
-        )?;
-        for row in &self.rows {
-            let lives = match (&row.first_pass, &row.last_pass) {
-                (Some(first), Some(last)) if first == last => short(first).to_owned(),
-                (Some(first), Some(last)) => format!("{} to {}", short(first), short(last)),
-                _ => "every frame".to_owned(),
-            };
-            let lives = match &row.arena {
-                Some(arena) => format!("{lives}, shared from {}", arena.offset),
-                None => lives,
-            };
-            writeln!(
-                text,
-                "{:<widest$}  {:>12} {:>12} {:>6} {:>6} {:>5}  {:<34} {lives}",
-                row.name,
-                row.bytes,
-                row.bound_bytes,
-                row.alignment_bytes,
-                row.alignment_waste_bytes,
-                row.memory_type,
-                row.kind,
-            )?;
-        }
-        let mut reasons: Vec<(u32, &str)> = self.rows.iter().map(|row| (row.memory_type, &*row.reason)).collect();
-        reasons.sort_unstable();
-        reasons.dedup();
-        writeln!(text)?;
-        for (memory_type, reason) in reasons {
-            writeln!(text, "type {memory_type}: {reason}")?;
-        }
-        for (group, bytes) in self.groups(|row| Some(row.bound_bytes)) {
-            writeln!(text, "{group:<18} {}", Bytes(bytes))?;
-        }
-        writeln!(
-            text,
-            "{} planned, {} allocated, {} of it saved by sharing, peak {} in {}",
-            Bytes(self.planned_bytes()),
-            Bytes(self.allocated_bytes()),
-            Bytes(self.sharing.aliased_bytes()),
-            Bytes(self.peak.bytes),
-            short(&self.peak.pass)
-        )
-    }
-}
-
-/// A pass without its technique.
-fn short(pass: &str) -> &str {
-    pass.split_once('.').map_or(pass, |(_, rest)| rest)
 }
 
 /// What a resource is, in words.
@@ -360,6 +207,7 @@ fn unplanned(entry: &Entry) -> MemoryRow {
         arena: None,
         memory_block: None,
         offset: None,
+        usage: None,
         kind: String::new(),
     }
 }
@@ -409,6 +257,10 @@ fn row(
         }),
         memory_block: None,
         offset: None,
+        usage: Some(match &planned.shape {
+            Shape::Image(image) => image.usage.as_raw(),
+            Shape::Buffer { flags, .. } => flags.as_raw(),
+        }),
         kind: kind(&planned.shape),
     })
 }
