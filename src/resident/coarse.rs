@@ -171,7 +171,7 @@ mod tests {
         clusters: Vec<Cluster>,
     }
 
-    const SCENES: [&str; 3] = ["hall:triangles=8000", "chess:triangles=6000", "lamps:objects=10"];
+    const SCENES: [&str; 2] = ["hall:triangles=8000", "lamps:objects=10"];
 
     /// Each mesh of a scene.
     fn coarsened(spec: &str) -> Vec<Coarsened> {
