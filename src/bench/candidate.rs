@@ -63,8 +63,10 @@ impl Candidate {
         let other = own.iter().find(|(key, text)| unread_axes.contains(key) && first(key) != Some(text.as_str()));
         let values = checked.and_then(|values| match (other, &unread) {
             (Some((key, _)), Some(unread)) => {
-                let (why, stands) = (&unread[key.as_str()], first(key).unwrap_or_default());
-                Err(Error::request(format!("{why}; the row with {key}={stands} stands for it")))
+                let why = &unread[key.as_str()];
+                // A point beside the grid may name what is no axis.
+                let stands = first(key).map(|stands| format!("; the row with {key}={stands} stands for it"));
+                Err(Error::request(format!("{why}{}", stands.unwrap_or_default())))
             }
             _ => Ok(timed(job.technique, &without_unread(job.technique, &values))),
         });

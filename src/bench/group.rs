@@ -3,7 +3,7 @@
 use super::candidate::{Candidate, changed};
 use super::copy::BufferCopy;
 use super::frames::{Sequence, VariantSequence};
-use super::rounds::{self, Probe, Samples};
+use super::rounds::{self, Length, Probe, Samples};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
@@ -177,9 +177,9 @@ impl Group {
     }
 
     /// Samples of each probe; errors as `rounds::run` has them.
-    pub fn measure(&self, repeat: usize, progress: &mut dyn FnMut(usize, usize)) -> Result<Vec<Samples>> {
+    pub fn measure(&self, length: Length, progress: &mut dyn FnMut(usize, usize)) -> Result<Vec<Samples>> {
         let probes: Vec<&dyn Probe> = self.probes.iter().map(Rc::as_ref).collect();
-        rounds::run(&probes, repeat, progress)
+        rounds::run(&probes, length, progress)
     }
 }
 

@@ -7,6 +7,8 @@
 pub mod best;
 pub mod candidate;
 pub mod copy;
+mod csv_file;
+pub mod fail_if;
 pub mod faster;
 pub mod frames;
 pub mod group;
@@ -21,6 +23,7 @@ pub mod rounds;
 pub mod row;
 pub mod rows_file;
 pub mod run;
+pub mod shard;
 pub mod stats;
 pub mod summary;
 pub mod sweep;

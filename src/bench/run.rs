@@ -6,9 +6,11 @@ use super::group::{Group, Measurement, is_of_memory};
 use super::head::{Head, Rounds};
 use super::machine::{Load, Ticks};
 use super::reference::References;
+use super::rounds::Length;
 use super::row::BenchRow;
 use super::rows_file::RowsFile;
-use super::sweep::{self, Axis, Part};
+use super::shard::Shard;
+use super::sweep::{self, Axis, Part, Point};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
@@ -30,10 +32,16 @@ pub struct Request<'a> {
     /// `KEY=VALUE KEY=VALUE`, a point of the grid, or one for each point of the axes that it leaves out; None: the first that is
     /// possible.
     pub baseline: Option<&'a str>,
+    /// Rows beside the grid.
+    pub points: &'a [Point],
     /// Rounds, at least one.
     pub repeat: usize,
+    /// As `rounds::Length` has it.
+    pub until_interval: Option<f64>,
     /// All rows shade as many texels a thread: those of `--texels`, or one. What cannot is skipped.
     pub is_fair: bool,
+    /// Measures only rows of its own; None: all of them.
+    pub shard: Option<Shard>,
     /// Frames of a sequence instead of one moment: only of `What::Frame`.
     pub frames: Option<&'a Frames>,
 }
@@ -74,8 +82,14 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
                    several numbers";
         return Err(Error::request(why).note("--fair --texels 4 gives them all four"));
     }
-    let grid = sweep::grid(request.axes);
-    let parts = sweep::parts(&grid, request.baseline)?;
+    let grid = sweep::with_points(sweep::grid(request.axes), request.points)?;
+    let mut parts = sweep::parts(&grid, request.baseline)?;
+    // Rows beside the grid may have no axis in common with a baseline: the first stands for them.
+    let strays = (0..grid.len()).filter(|index| parts.iter().all(|part| !part.points.contains(index)));
+    let strays: Vec<usize> = strays.collect();
+    if let Some(first) = parts.first_mut() {
+        first.points.extend(strays);
+    }
     let scene = job.load_scene()?;
     let (axes, hash) = (request.axes, scene.hash.clone());
     let scene = match request.frames {
@@ -138,11 +152,12 @@ struct Sweep<'a> {
     head: Head<'a>,
     /// The whole grid's.
     candidates: &'a [Candidate],
-    /// The part's places in the grid.
-    points: &'a [usize],
+    /// Those of the part's places in the grid that are asked for.
+    points: Vec<usize>,
     /// Place in the grid.
     baseline: usize,
     baseline_variant: Rc<Variant>,
+    until_interval: Option<f64>,
     /// Impossible points found while the baseline was looked for.
     refused: Vec<(usize, Error)>,
     found: &'a mut Found,
@@ -184,8 +199,22 @@ impl<'a> Sweep<'a> {
         let (repeat, frames) = (request.repeat, request.frames.cloned());
         let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone(), frames };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
+        let is_own = |index: &usize| request.shard.is_none_or(|shard| shard.has(&head.row(&candidates[*index])));
+        let points: Vec<usize> = points.iter().copied().filter(is_own).collect();
         points.iter().for_each(|index| found.rows[*index] = kept(&candidates[*index]));
-        Ok(Self { head, candidates, points, baseline, baseline_variant, refused, found, file, observer })
+        let until_interval = request.until_interval;
+        Ok(Self {
+            head,
+            candidates,
+            points,
+            baseline,
+            baseline_variant,
+            until_interval,
+            refused,
+            found,
+            file,
+            observer,
+        })
     }
 
     fn measure(&mut self) -> Result<()> {
@@ -194,7 +223,7 @@ impl<'a> Sweep<'a> {
         }
         let mut waiting: VecDeque<usize> =
             self.points.iter().copied().filter(|index| *index != self.baseline && !self.is_known(*index)).collect();
-        while !waiting.is_empty() || !self.is_known(self.baseline) {
+        while !waiting.is_empty() || self.is_missing(self.baseline) {
             let group = self.gather(&mut waiting)?;
             if group.members.is_empty() {
                 continue;
@@ -214,10 +243,15 @@ impl<'a> Sweep<'a> {
         self.found.rows[index].is_some()
     }
 
+    /// Whether its row is asked for and not there.
+    fn is_missing(&self, index: usize) -> bool {
+        self.points.contains(&index) && !self.is_known(index)
+    }
+
     /// The next group: as many of those that wait as have room.
     fn gather(&mut self, waiting: &mut VecDeque<usize>) -> Result<Group> {
         let mut group = Group::new(&self.baseline_variant);
-        if !self.is_known(self.baseline) {
+        if self.is_missing(self.baseline) {
             let values = self.candidates[self.baseline].values.clone()?;
             let measurement = self.head.measurement.of(&self.candidates[self.baseline]);
             group.add_baseline(&measurement, self.baseline, &self.baseline_variant, &values);
@@ -248,7 +282,8 @@ impl<'a> Sweep<'a> {
         let (known, all, members) = (self.known(), self.found.rows.len(), group.members.len());
         let observer = &mut *self.observer;
         let (started, before) = (SystemTime::now(), Ticks::now());
-        let samples = group.measure(repeat, &mut |done, of| {
+        let length = Length { least: repeat, until_interval: self.until_interval };
+        let samples = group.measure(length, &mut |done, of| {
             // A step is a round of one variant; what stands beside variants has no steps of its own.
             observer.step(known * repeat + members * repeat * done / of, all * repeat);
         })?;
@@ -286,7 +321,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn skip(&mut self, index: usize, error: &Error) -> Result<()> {
-        if !self.is_known(index) {
+        if self.is_missing(index) {
             let row = self.head.skipped(&self.candidates[index], error);
             self.emit(index, row)?;
         }

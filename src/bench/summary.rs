@@ -1,6 +1,7 @@
 //! The summary of a sweep: all its rows with the Pareto set marked, the best values, what was skipped and why.
 
 use super::best::{self, Best};
+use super::csv_file;
 use super::machine::BUSY_SHARE;
 use super::pareto;
 use super::rates::{self, Rate};
@@ -101,12 +102,13 @@ impl Summary {
         self.rates.as_ref().map_or_else(String::new, |(key, rates)| format!("\n{}", rates::markdown(key, rates)))
     }
 
-    /// Writes `summary.json` and `summary.md`, and where there are rates `rates.svg`.
+    /// Writes `summary.json`, `summary.md` and `rows.csv`, and where there are rates `rates.svg`.
     ///
     /// Errors: they cannot be written (exit code 2).
     pub fn write(&self, folder: &Path) -> Result<()> {
         write_whole(&folder.join("summary.json"), |out| writeln!(out, "{:#}", self.json()))?;
         write_whole(&folder.join("summary.md"), |out| out.write_all(self.markdown().as_bytes()))?;
+        csv_file::write(folder, &self.rows)?;
         let Some((key, rates)) = &self.rates else { return Ok(()) };
         write_whole(&folder.join("rates.svg"), |out| out.write_all(rates_plot::svg(key, rates).as_bytes()))
     }

@@ -54,6 +54,38 @@ pub fn grid(axes: &[Axis]) -> Vec<Point> {
     })
 }
 
+/// Reads `KEY=VALUE KEY=VALUE`.
+///
+/// Errors: a word is no such pair, or a key is given twice (exit code 2).
+pub fn point(text: &str) -> Result<Point> {
+    let wrong = |why: &str| {
+        Error::request(format!("--point {text:?}: {why}")).note("for example --point \"size=640x360 seed=2\"")
+    };
+    let mut point = Point::new();
+    for word in text.split_whitespace() {
+        let (key, value) = word.split_once('=').ok_or_else(|| wrong("it must be KEY=VALUE KEY=VALUE"))?;
+        let key = key.trim_start_matches("--");
+        if point.iter().any(|(known, _)| known == key) {
+            return Err(wrong(&format!("{key} is there twice")));
+        }
+        point.push((key.to_owned(), value.to_owned()));
+    }
+    if point.is_empty() { Err(wrong("it is empty")) } else { Ok(point) }
+}
+
+/// The grid, and `points` behind it.
+///
+/// Errors: one of them is there already (exit code 2).
+pub fn with_points(mut grid: Vec<Point>, points: &[Point]) -> Result<Vec<Point>> {
+    for point in points {
+        if grid.contains(point) {
+            return Err(Error::request(format!("--point \"{}\": this row is there already", label(point))));
+        }
+        grid.push(point.clone());
+    }
+    Ok(grid)
+}
+
 /// `key=value key=value`, for tables; `defaults` without axes.
 pub fn label(point: &Point) -> String {
     if point.is_empty() {

@@ -2,16 +2,19 @@
 
 use super::listed::TechniqueSelection;
 use super::output;
-use super::{frames_args, job_args, progress, rays, reference_args};
+use super::{bench_file, bench_merge, frames_args, job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
+use crate::bench::fail_if::Condition;
 use crate::bench::rates;
+use crate::bench::rounds::MOST_TIMES;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::run::{self, Observer, Request};
+use crate::bench::shard::Shard;
 use crate::bench::summary::Summary;
 use crate::bench::sweep;
 use crate::bench::what::What;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::progress::{Pace, Stage, say};
 use crate::techniques::bench_stage::BenchStage;
 use crate::techniques::{self, Technique, settings_of};
@@ -37,6 +40,8 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 .map(|what| reference_args::with_reference_args(job_args::with_job_args(listed, sub_command(what)))),
         )
         .subcommand(rays::command())
+        .subcommand(bench_merge::command())
+        .subcommand(bench_file::command())
 }
 
 /// A line a technique: which stages it has.
@@ -110,8 +115,28 @@ fn sub_command(what: What) -> Command {
                 .long("output")
                 .value_name("DIR")
                 .value_parser(value_parser!(PathBuf))
-                .help("Folder to write rows.jsonl, summary.json and summary.md to"),
+                .help("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to"),
         )
+        .arg(
+            Arg::new("point").long("point").value_name("KEY=V KEY=V").action(ArgAction::Append).help(
+                "A row beside the grid, with these settings; may be repeated",
+            ),
+        )
+        .arg(Arg::new("until-interval").long("until-interval").value_name("PART").value_parser(part).help(format!(
+            "Measure more rounds, up to {MOST_TIMES} times --repeat, until the 95 % interval of each ratio is at most this part \
+             of it wide, such as 0.03"
+        )))
+        .arg(
+            Arg::new("shard")
+                .long("shard")
+                .value_name("I/N")
+                .value_parser(value_parser!(Shard))
+                .help("Measure only the I-th of N parts of the rows, chosen by what they are of; `bench merge` joins them"),
+        )
+        .arg(Arg::new("fail-if").long("fail-if").value_name("NAME>NUMBER").action(ArgAction::Append).help(
+            "Fail with exit code 1 where this holds of a row, by the whole interval where there is one: time_ratio, median_ms, \
+             planned_bytes, allocated_bytes, peak_bytes, an error such as rmse, or counters.NAME, > or < a number; may be repeated",
+        ))
         .arg(flag("resume").help("Measure only what DIR/rows.jsonl lacks"))
         .arg(flag("force").conflicts_with("resume").help("Replace DIR/rows.jsonl"))
 }
@@ -119,15 +144,23 @@ fn sub_command(what: What) -> Command {
 /// Measures and prints.
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let (name, matches) = matches.subcommand().expect("clap requires a sub-verb");
-    if name == rays::NAME {
-        return rays::run(matches);
+    match name {
+        rays::NAME => return rays::run(matches),
+        bench_merge::NAME => return bench_merge::run(matches, argv),
+        bench_file::NAME => return run_file(matches),
+        _ => {}
     }
     let what = What::all().into_iter().find(|what| what.name() == name).expect("clap knows these only");
     let mut job = job_args::job(matches, argv)?;
     job.reference = reference_args::asked(matches)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
     let axes = sweep::axes(&sweeps)?;
-    axes.iter().try_for_each(|axis| require_known(&axis.key))?;
+    axes.iter().try_for_each(|axis| require_known("sweep", &axis.key))?;
+    let points = matches.get_many::<String>("point").into_iter().flatten();
+    let points = points.map(|text| sweep::point(text)).collect::<Result<Vec<_>>>()?;
+    points.iter().flatten().try_for_each(|(key, _)| require_known("point", key))?;
+    let conditions = matches.get_many::<String>("fail-if").into_iter().flatten();
+    let conditions = conditions.map(|text| Condition::parse(text)).collect::<Result<Vec<_>>>()?;
     let rate = matches.get_one::<String>("rate").map(|key| rates::axis(key, &axes)).transpose()?;
     let folder = matches.get_one::<PathBuf>("output");
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
@@ -142,8 +175,12 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         baseline: matches.get_one::<String>("baseline").map(String::as_str),
         repeat: *matches.get_one::<u32>("repeat").expect("it has a default") as usize,
         is_fair: matches.get_flag("fair"),
+        points: &points,
+        until_interval: matches.get_one::<f64>("until-interval").copied(),
+        shard: matches.get_one::<Shard>("shard").copied(),
     };
     let found = run::run(&request, file.as_mut(), &mut Rounds { json, stage: None, pace: Pace::default() })?;
+    let held = conditions.iter().try_for_each(|condition| condition.require_false(&found.rows));
     if !found.rows.is_empty() {
         let mut summary = Summary::new(what, &axes, found.rows, argv);
         if let Some(axis) = rate {
@@ -160,16 +197,39 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         let way_out = if folder.is_some() { "--resume continues" } else { "with -o DIR, --resume could continue" };
         return Err(Error::interrupted("interrupted; finished rows are valid").note(way_out));
     }
-    found.gates
+    found.gates.and(held)
+}
+
+/// Runs the commands of a file, one after the other; a gate that fails ends none of them.
+fn run_file(matches: &ArgMatches) -> Result<()> {
+    progress::install(matches.get_flag("quiet"));
+    let mut gates = Ok(());
+    for words in bench_file::commands(matches)? {
+        let argv: Vec<String> = std::iter::once("quincunx".to_owned()).chain(words.iter().cloned()).collect();
+        say(argv.join(" "));
+        let parsed = command(&TechniqueSelection::All).try_get_matches_from(&words);
+        let parsed = parsed.map_err(|error| {
+            // What clap says of usage is of a command that nobody typed.
+            let text = error.to_string();
+            let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+            let file = matches.get_one::<PathBuf>("file").expect("clap requires it");
+            Error::request(format!("{}: {first}", file.display()))
+        })?;
+        match run(&parsed, &argv) {
+            Err(error) if error.kind() == ErrorKind::Gate => gates = gates.and(Err(error)),
+            done => done?,
+        }
+    }
+    gates
 }
 
 /// Errors: no technique reads a setting of this name (exit code 2), with the setting that `--KEY` resembles.
-pub(super) fn require_known(key: &str) -> Result<()> {
+pub(super) fn require_known(flag: &str, key: &str) -> Result<()> {
     if key == TECHNIQUE || techniques::ALL.iter().any(|one| settings_of(*one).iter().any(|setting| setting.key == key))
     {
         return Ok(());
     }
-    let error = Error::request(format!("--sweep {key}=: there is no setting --{key}"));
+    let error = Error::request(format!("--{flag} {key}=: there is no setting --{key}"));
     // The parser itself says what a flag resembles.
     let refused = command(&TechniqueSelection::All)
         .try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")])
@@ -179,6 +239,12 @@ pub(super) fn require_known(key: &str) -> Result<()> {
         Some(ContextValue::String(similar)) => error.note(format!("a similar one exists: {similar}")),
         _ => error.note("`quincunx bench frame --help` lists them"),
     })
+}
+
+/// A part of a whole, above 0 and up to 1.
+fn part(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|part: &f64| *part > 0.0 && *part <= 1.0);
+    number.ok_or_else(|| "it must be a number above 0 and up to 1".to_owned())
 }
 
 fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {

@@ -284,7 +284,7 @@ mod tests {
                 job.check()?;
                 let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
                 let axes = sweep::axes(&sweeps)?;
-                axes.iter().try_for_each(|axis| require_known(&axis.key))?;
+                axes.iter().try_for_each(|axis| require_known("sweep", &axis.key))?;
                 sweep::parts(&sweep::grid(&axes), matches.get_one::<String>("baseline").map(String::as_str))?;
                 let has_stage = job.technique.bench_stages().iter().any(|stage| stage.name == what);
                 if what != "frame" && !has_stage {

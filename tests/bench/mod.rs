@@ -1,9 +1,11 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
+mod file;
 mod frames;
 mod rates;
 mod rays;
 mod rows;
+mod shards;
 mod stages;
 
 use crate::support::benched::{bench, lines, read};

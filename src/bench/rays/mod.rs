@@ -10,7 +10,7 @@ mod host;
 mod query;
 pub mod report;
 
-use super::rounds::{self, Probe, Samples};
+use super::rounds::{self, Length, Probe, Samples};
 use crate::bvh::Bvh;
 use crate::bvh::flat::flattened;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -148,7 +148,7 @@ pub fn run(
     }
     let mut probes: Vec<&dyn Probe> = device.iter().map(|(_, _, walk)| walk as &dyn Probe).collect();
     probes.extend(host.iter().map(|(_, walk)| walk as &dyn Probe));
-    let samples = rounds::run(&probes, request.repeat, progress)?;
+    let samples = rounds::run(&probes, Length { least: request.repeat, until_interval: None }, progress)?;
     let mut all = Vec::new();
     for (index, (rays, kind, walk)) in device.iter().enumerate() {
         let is_same = |(other, of): &(Rays, HostWalk<'_>)| other == rays && of.query == walk.query;

@@ -1,0 +1,112 @@
+//! Sweeps as files, rows beside the grid, and rounds until ratios are told.
+
+use crate::support::benched::{bench, lines, read};
+use crate::support::program::Program;
+use serde_json::Value;
+
+const FILE: &str = r#"
+bench = "frame"
+scenes = ["cornell", "lamps:objects=5,lights=3"]
+repeat = 3
+baseline = "split=none vpls=16"
+
+[settings]
+size = "64x48"
+direct = "none"
+
+[sweep]
+split = ["none", "one-pass"]
+vpls = [16, 32]
+
+[[point]]
+split = "branch"
+pattern = "2x2"
+"#;
+
+fn variants(rows: &[Value]) -> Vec<&str> {
+    rows.iter().map(|row| row["variant"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn a_file_says_what_flags_say() {
+    let program = Program::new();
+    std::fs::write(program.path("sweep.toml"), FILE).unwrap();
+    let ran = program.run(&["bench", "run", "sweep.toml", "-o", "out", "--json"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let printed = lines(&ran.out);
+    let mut said = Vec::new();
+    for folder in ["cornell", "lamps-objects-5-lights-3"] {
+        let rows = lines(&read(&program, &format!("out/{folder}/rows.jsonl")));
+        let summary: Value = serde_json::from_str(&read(&program, &format!("out/{folder}/summary.json"))).unwrap();
+        let found = variants(&rows);
+        assert_eq!(found.len(), 5, "{found:?}");
+        assert!(found.contains(&"split=one-pass vpls=32") && found.contains(&"split=branch pattern=2x2"), "{found:?}");
+        let point = rows.iter().find(|row| row["variant"] == "split=branch pattern=2x2").unwrap();
+        assert_eq!((&point["settings"]["pattern"], &point["settings"]["direct"]), (&"2x2".into(), &"none".into()));
+        assert!(point["ratio"]["mean"].as_f64().unwrap() > 0.0 && point["baseline"] == "split=none vpls=16");
+        // The command of a scene is one that a user can type, and comes to the same rows.
+        let command: Vec<String> = serde_json::from_value(summary["command"].clone()).unwrap();
+        assert!(ran.err.contains(&command[1..].join(" ")), "{}", ran.err);
+        let words: Vec<&str> = command[1..].iter().map(String::as_str).chain(["--resume", "--quiet"]).collect();
+        assert_eq!(program.run(&words).fine().out, "", "nothing is missing");
+        said.extend(rows);
+    }
+    assert_eq!(variants(&printed), variants(&said));
+    assert_eq!(program.run(&["bench", "run", "sweep.toml", "-o", "out"]).code, 2, "rows are there");
+    assert_eq!(
+        program.run(&["bench", "run", "sweep.toml", "-o", "out", "--resume", "--json", "--quiet"]).fine().out,
+        ""
+    );
+}
+
+#[test]
+fn a_file_that_is_no_sweep_is_refused() {
+    let program = Program::new();
+    for (text, words) in [
+        ("nothing = 1", &["sweep.toml: line 1", "nothing"][..]),
+        ("repeat = 3\nsweep = 7", &["sweep.toml: line 2"]),
+        ("bench = \"nothing\"", &["sweep.toml", "nothing"]),
+        ("[settings]\nnothing = 1", &["sweep.toml", "--nothing"]),
+        ("[sweep]\nnothing = [1]", &["--sweep nothing=", "no setting"]),
+        ("[[point]]\nnothing = 1", &["--point nothing=", "no setting"]),
+        ("repeat = 0", &["sweep.toml", "--repeat"]),
+        ("until-interval = 2", &["sweep.toml", "--until-interval"]),
+        ("scenes = [\"a/box.glb\", \"b/box.glb\"]", &["folder box", "b/box.glb"]),
+        ("scenes = [\"nowhere.glb\"]", &["nowhere.glb"]),
+    ] {
+        std::fs::write(program.path("sweep.toml"), text).unwrap();
+        let ran = program.run(&["bench", "run", "sweep.toml", "-o", "out"]);
+        assert_eq!(ran.code, 2, "{text}: {}", ran.err);
+        assert!(words.iter().all(|word| ran.err.contains(word)), "{text}: {}", ran.err);
+    }
+    program.fails(&["bench", "run", "nowhere.toml", "-o", "out"], 2, &["nowhere.toml"]);
+}
+
+#[test]
+fn points_stand_beside_the_grid() {
+    let program = Program::new();
+    let sweep = ["--sweep", "split=one-pass,branch", "--json", "--quiet", "--point"];
+    let run = |point: &str| program.run(&bench("frame", &[&sweep[..], &[point]].concat()));
+    let rows = lines(&run("pattern=2x2 --kernel=7").fine().out);
+    assert_eq!(variants(&rows), ["split=one-pass", "split=branch", "pattern=2x2 kernel=7"]);
+    assert_eq!(rows[2]["baseline"], "split=one-pass");
+    for (wrong, why) in
+        [("split=branch", "already"), ("pattern", "KEY=VALUE"), ("kernel=5 kernel=7", "twice"), ("", "empty")]
+    {
+        let ran = run(wrong);
+        assert!(ran.code == 2 && ran.err.contains(why), "{wrong}: {}", ran.err);
+    }
+}
+
+#[test]
+fn rounds_go_on_until_intervals_are_narrow_or_it_is_enough() {
+    let program = Program::new();
+    let sweep = ["--sweep", "split=none,one-pass", "--json", "--quiet", "--until-interval"];
+    let pairs = |part: &str| {
+        let rows = lines(&program.run(&bench("frame", &[&sweep[..], &[part]].concat())).fine().out);
+        rows[1]["ratio"]["pairs"].as_u64().unwrap()
+    };
+    // No machine is so even.
+    assert_eq!(pairs("1e-9"), 30);
+    assert!((3..=30).contains(&pairs("0.9")));
+}
