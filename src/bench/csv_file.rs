@@ -1,5 +1,6 @@
 //! Rows as a table that other programs read: `rows.csv`, a line a row, one column a setting that was typed.
 
+use super::numbers::NUMBERS;
 use super::row::BenchRow;
 use crate::error::Result;
 use crate::whole_file::write_whole;
@@ -19,21 +20,18 @@ const BEFORE: [Column; 4] = [
     ("variant", |row| Some(row.variant.clone())),
 ];
 
-const BEHIND: [Column; 17] = [
+/// Behind these come the `NUMBERS` of a row.
+const BEHIND: [Column; 13] = [
     ("device", |row| Some(row.device.as_ref()?.name.clone())),
     ("commit", |row| Some(row.commit.clone())),
     ("repeat", |row| Some(row.repeat.to_string())),
     ("baseline", |row| Some(row.baseline.clone())),
-    ("median_ms", |row| Some(row.times_ms()?.median.to_string())),
     ("min_ms", |row| Some(row.times_ms()?.min.to_string())),
     ("max_ms", |row| Some(row.times_ms()?.max.to_string())),
-    ("time_ratio", |row| Some(row.ratio.as_ref()?.mean.to_string())),
     ("time_ratio_low", |row| Some(row.interval()?[0].to_string())),
     ("time_ratio_high", |row| Some(row.interval()?[1].to_string())),
     ("rmse", |row| Some(row.best_known_errors()?.rmse.to_string())),
     ("flip", |row| Some(row.best_known_errors()?.flip.to_string())),
-    ("planned_bytes", |row| Some(row.planned_bytes?.to_string())),
-    ("peak_bytes", |row| Some(row.memory.as_ref()?.peak_bytes.to_string())),
     ("bytes_read", |row| Some(row.bytes_read?.to_string())),
     ("bytes_written", |row| Some(row.bytes_written?.to_string())),
     ("skipped", |row| row.skipped.clone()),
@@ -48,11 +46,13 @@ pub fn write(folder: &Path, rows: &[BenchRow]) -> Result<()> {
         let mut table = csv::Writer::from_writer(out);
         let titles = |columns: &'static [Column]| columns.iter().map(|(title, _)| (*title).to_owned());
         let settings = keys.iter().map(|key| format!("--{key}"));
-        table.write_record(titles(&BEFORE).chain(settings).chain(titles(&BEHIND)))?;
+        let numbers = NUMBERS.map(|(name, _)| name.to_owned());
+        table.write_record(titles(&BEFORE).chain(settings).chain(titles(&BEHIND)).chain(numbers))?;
         for row in rows {
             let cells = |columns: &'static [Column]| columns.iter().map(|(_, cell)| cell(row).unwrap_or_default());
             let settings = keys.iter().map(|key| row.asked_text(key));
-            table.write_record(cells(&BEFORE).chain(settings).chain(cells(&BEHIND)))?;
+            let numbers = NUMBERS.map(|(_, read)| read(row).map(|number| number.value.to_string()).unwrap_or_default());
+            table.write_record(cells(&BEFORE).chain(settings).chain(cells(&BEHIND)).chain(numbers))?;
         }
         table.flush().map_err(csv::Error::from)
     })

@@ -1,18 +1,16 @@
 //! Bounds on rows, for scripts: `--fail-if "time_ratio > 1.05"`. A number with an interval is over a bound where all of the interval
 //! is; one without, where it is itself.
 
+use super::numbers::{NUMBERS, Number, Read};
 use super::row::BenchRow;
 use crate::error::{Error, Result};
 use crate::metrics::{Measure, Metrics};
 
-/// Numbers that every measured row has, if they are there at all.
-const NAMES: [&str; 5] = ["time_ratio", "median_ms", "planned_bytes", "allocated_bytes", "peak_bytes"];
 const COUNTERS: &str = "counters.";
 
 /// What is looked at.
 enum Quantity {
-    /// One of `NAMES`.
-    Named(&'static str),
+    Named(Read),
     Error(&'static Measure),
     Counter(String),
 }
@@ -25,12 +23,6 @@ pub struct Condition {
     bound: f64,
 }
 
-/// A number, and its interval where it has one.
-struct Found {
-    value: f64,
-    interval: Option<[f64; 2]>,
-}
-
 impl Condition {
     /// `NAME > NUMBER` or `NAME < NUMBER`.
     ///
@@ -39,7 +31,7 @@ impl Condition {
         let refused = |why: &str| {
             Error::request(format!("--fail-if {text:?}: {why}")).note(format!(
                 "for example --fail-if \"time_ratio > 1.05\"; there are {}, errors ({}) and counters.NAME",
-                NAMES.join(", "),
+                NUMBERS.map(|(name, _)| name).join(", "),
                 Metrics::NAMES.join(", ")
             ))
         };
@@ -51,45 +43,38 @@ impl Condition {
         let (name, number) = (text[..at].trim(), text[at + 1..].trim());
         let bound = number.parse().ok().filter(|bound: &f64| bound.is_finite());
         let bound = bound.ok_or_else(|| refused(&format!("{number:?} is not a number")))?;
-        let named = NAMES.into_iter().find(|known| *known == name).map(Quantity::Named);
+        let named = NUMBERS.into_iter().find(|(known, _)| *known == name).map(|(_, read)| Quantity::Named(read));
         let counter = || Some(Quantity::Counter(name.strip_prefix(COUNTERS)?.to_owned()));
         let quantity = named.or_else(|| Measure::named(name).map(Quantity::Error)).or_else(counter);
         let quantity = quantity.ok_or_else(|| refused(&format!("no row has {name:?}")))?;
         Ok(Self { text: text.trim().to_owned(), quantity, is_above, bound })
     }
 
-    fn found(&self, row: &BenchRow) -> Option<Found> {
-        let exact = |value: f64| Found { value, interval: None };
-        let bytes = |bytes: u64| exact(bytes as f64);
+    fn found(&self, row: &BenchRow) -> Option<Number> {
         match &self.quantity {
-            Quantity::Named("time_ratio") => {
-                let ratio = row.ratio.as_ref()?;
-                Some(Found { value: ratio.mean, interval: ratio.interval })
-            }
-            Quantity::Named("median_ms") => Some(exact(row.times_ms()?.median)),
-            Quantity::Named("planned_bytes") => row.planned_bytes.map(bytes),
-            Quantity::Named("allocated_bytes") => row.memory.as_ref()?.allocated_bytes.map(bytes),
-            Quantity::Named(_) => Some(bytes(row.memory.as_ref()?.peak_bytes)),
-            Quantity::Error(measure) => row.best_known_errors().map(|errors| exact((measure.value)(errors))),
-            Quantity::Counter(name) => row.counters.as_ref()?.get(name).copied().map(exact),
+            Quantity::Named(read) => read(row),
+            Quantity::Error(measure) => row.best_known_errors().map(|errors| Number::exact((measure.value)(errors))),
+            Quantity::Counter(name) => row.counters.as_ref()?.get(name).copied().map(Number::exact),
         }
     }
 
-    fn holds(&self, Found { value, interval }: &Found) -> bool {
+    fn holds(&self, Number { value, interval }: &Number) -> bool {
         let [low, high] = interval.unwrap_or([*value; 2]);
         if self.is_above { low > self.bound } else { high < self.bound }
     }
 
-    /// Errors: it holds of a row (exit code 1), which are named; no row has the number (2).
+    /// Nothing that was measured, such as a shard without rows, is nothing to complain of.
+    ///
+    /// Errors: it holds of a row (exit code 1), which are named; no measured row has the number (2).
     pub fn require_false(&self, rows: &[BenchRow]) -> Result<()> {
-        let all: Vec<(&BenchRow, Found)> = rows.iter().filter_map(|row| Some((row, self.found(row)?))).collect();
-        if all.is_empty() {
+        let all: Vec<(&BenchRow, Number)> = rows.iter().filter_map(|row| Some((row, self.found(row)?))).collect();
+        if all.is_empty() && rows.iter().any(BenchRow::was_measured) {
             return Err(Error::request(format!("--fail-if {:?}: no row has it", self.text)));
         }
         let held: Vec<String> = all
             .iter()
             .filter(|(_, found)| self.holds(found))
-            .map(|(row, Found { value, interval })| match interval {
+            .map(|(row, Number { value, interval })| match interval {
                 Some([low, high]) => format!("{} {value:.4} ({low:.4} to {high:.4})", row.variant),
                 None => format!("{} {value}", row.variant),
             })
@@ -135,6 +120,11 @@ mod tests {
         }
         for held in ["time_ratio<1.01", "median_ms > 6.9", "counters.lights < 13"] {
             assert_eq!(failed(held).unwrap().exit_code(), 1, "{held}");
+        }
+        // What was not measured is not judged.
+        let skipped = BenchRow { skipped: Some("it cannot be".to_owned()), ..BenchRow::default() };
+        for none in [&[][..], &[skipped]] {
+            assert!(Condition::parse("time_ratio > 1.05").unwrap().require_false(none).is_ok());
         }
         // Without an interval the number itself counts.
         assert!(Condition::parse("time_ratio > 1.05").unwrap().require_false(&[row("d", 1.06, None)]).is_err());

@@ -31,6 +31,8 @@ const SCHEMA: u32 = 1;
 pub struct Head<'a> {
     pub measurement: Measurement<'a>,
     pub repeat: usize,
+    /// As `rounds::Length` has it.
+    pub until_interval: Option<f64>,
     /// The baseline's label.
     pub baseline: String,
     /// None: one moment.
@@ -64,6 +66,7 @@ impl Head<'_> {
             asked: Some(candidate.asked.iter().map(text).collect()),
             settings: candidate.settings.iter().map(|(key, text)| (key.clone(), SettingValue::of(text))).collect(),
             repeat: self.repeat,
+            until_interval: self.until_interval,
             baseline: self.baseline.clone(),
             fair: is_fair.then_some(true),
             reference: job.reference.as_ref().map(ReferenceRequest::identity),

@@ -14,6 +14,7 @@ pub mod frames;
 pub mod group;
 pub mod head;
 pub mod machine;
+pub mod numbers;
 pub mod pareto;
 pub mod rates;
 pub mod rates_plot;

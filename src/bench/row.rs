@@ -41,8 +41,11 @@ pub struct BenchRow {
     pub asked: Option<WrittenSettings>,
     /// Every setting as it was used; as it was typed where the row was not measured.
     pub settings: WrittenSettings,
-    /// Rounds.
+    /// Rounds, at least.
     pub repeat: usize,
+    /// Widest interval of a ratio, in parts of it, for which more rounds were measured; None: no more.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub until_interval: Option<f64>,
     /// The variant that ratios are to.
     pub baseline: String,
     /// True with `--fair`; else None.
@@ -242,6 +245,7 @@ impl BenchRow {
             self.device,
             self.commit,
             self.repeat,
+            self.until_interval,
             self.baseline,
             self.variant,
             self.reference,

@@ -157,7 +157,6 @@ struct Sweep<'a> {
     /// Place in the grid.
     baseline: usize,
     baseline_variant: Rc<Variant>,
-    until_interval: Option<f64>,
     /// Impossible points found while the baseline was looked for.
     refused: Vec<(usize, Error)>,
     found: &'a mut Found,
@@ -197,24 +196,13 @@ impl<'a> Sweep<'a> {
         };
         let (baseline, baseline_variant) = first?;
         let (repeat, frames) = (request.repeat, request.frames.cloned());
-        let head = Head { measurement, repeat, baseline: candidates[baseline].label.clone(), frames };
+        let until_interval = request.until_interval;
+        let head = Head { measurement, repeat, until_interval, baseline: candidates[baseline].label.clone(), frames };
         let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
         let is_own = |index: &usize| request.shard.is_none_or(|shard| shard.has(&head.row(&candidates[*index])));
         let points: Vec<usize> = points.iter().copied().filter(is_own).collect();
         points.iter().for_each(|index| found.rows[*index] = kept(&candidates[*index]));
-        let until_interval = request.until_interval;
-        Ok(Self {
-            head,
-            candidates,
-            points,
-            baseline,
-            baseline_variant,
-            until_interval,
-            refused,
-            found,
-            file,
-            observer,
-        })
+        Ok(Self { head, candidates, points, baseline, baseline_variant, refused, found, file, observer })
     }
 
     fn measure(&mut self) -> Result<()> {
@@ -282,7 +270,7 @@ impl<'a> Sweep<'a> {
         let (known, all, members) = (self.known(), self.found.rows.len(), group.members.len());
         let observer = &mut *self.observer;
         let (started, before) = (SystemTime::now(), Ticks::now());
-        let length = Length { least: repeat, until_interval: self.until_interval };
+        let length = Length { least: repeat, until_interval: self.head.until_interval };
         let samples = group.measure(length, &mut |done, of| {
             // A step is a round of one variant; what stands beside variants has no steps of its own.
             observer.step(known * repeat + members * repeat * done / of, all * repeat);

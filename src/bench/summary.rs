@@ -131,7 +131,18 @@ impl Summary {
             _ => format!("{MARK}: no row with at most its rmse is faster by the interval of their ratio"),
         };
         let errors = self.reference().map_or_else(String::new, |name| format!("errors against {name}; "));
-        format!("time ratios to {baseline}, of {rounds} rounds; {errors}{told}")
+        format!("time ratios to {baseline}, of {} rounds; {errors}{told}", self.rounds())
+    }
+
+    /// How many rounds there were: what was asked for, or, where it was left open, from how many to how many.
+    fn rounds(&self) -> String {
+        let first = &self.rows[0];
+        let pairs = || self.rows.iter().filter_map(|row| Some(row.ratio.as_ref()?.pairs));
+        match (first.until_interval, pairs().min().zip(pairs().max())) {
+            (Some(_), Some((least, most))) if least < most => format!("{least} to {most}"),
+            (Some(_), Some((least, _))) => least.to_string(),
+            _ => first.repeat.to_string(),
+        }
     }
 
     /// What ratios are to: one row, or one of each part of the sweep.

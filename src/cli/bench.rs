@@ -109,14 +109,7 @@ fn sub_command(what: What) -> Command {
              this flag each row shades as many as suit it best, up to 32 where threads share a list of lights and 1 where \
              they do not",
         ))
-        .arg(
-            Arg::new("output")
-                .short('o')
-                .long("output")
-                .value_name("DIR")
-                .value_parser(value_parser!(PathBuf))
-                .help("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to"),
-        )
+        .arg(output::folder_flag("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to"))
         .arg(
             Arg::new("point").long("point").value_name("KEY=V KEY=V").action(ArgAction::Append).help(
                 "A row beside the grid, with these settings; may be repeated",
@@ -126,13 +119,7 @@ fn sub_command(what: What) -> Command {
             "Measure more rounds, up to {MOST_TIMES} times --repeat, until the 95 % interval of each ratio is at most this part \
              of it wide, such as 0.03"
         )))
-        .arg(
-            Arg::new("shard")
-                .long("shard")
-                .value_name("I/N")
-                .value_parser(value_parser!(Shard))
-                .help("Measure only the I-th of N parts of the rows, chosen by what they are of; `bench merge` joins them"),
-        )
+        .arg(bench_file::shard_flag())
         .arg(Arg::new("fail-if").long("fail-if").value_name("NAME>NUMBER").action(ArgAction::Append).help(
             "Fail with exit code 1 where this holds of a row, by the whole interval where there is one: time_ratio, median_ms, \
              planned_bytes, allocated_bytes, peak_bytes, an error such as rmse, or counters.NAME, > or < a number; may be repeated",

@@ -1,7 +1,7 @@
 //! `quincunx bench run FILE.toml`: a sweep as a file, which says what the flags of `bench` say. What comes of it are commands that a
 //! user can type, one a scene.
 
-use super::output::quiet_flag;
+use super::output::{folder_flag, quiet_flag};
 use crate::bench::shard::Shard;
 use crate::error::{Error, Result};
 use crate::whole_file::read_document;
@@ -60,6 +60,15 @@ struct Sweep {
     point: Vec<IndexMap<String, Scalar>>,
 }
 
+/// `--shard I/N`, of all that measures rows.
+pub fn shard_flag() -> Arg {
+    Arg::new("shard")
+        .long("shard")
+        .value_name("I/N")
+        .value_parser(value_parser!(Shard))
+        .help("Measure only the I-th of N parts of the rows, chosen by what they are of; `bench merge` joins them")
+}
+
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
@@ -71,24 +80,10 @@ pub fn command() -> Command {
              grid.",
         )
         .arg(Arg::new("file").value_name("FILE.toml").required(true).value_parser(value_parser!(PathBuf)))
-        .arg(
-            Arg::new("output")
-                .short('o')
-                .long("output")
-                .value_name("DIR")
-                .required(true)
-                .value_parser(value_parser!(PathBuf))
-                .help("Folder for results; of several scenes with a folder in it for each"),
-        )
+        .arg(folder_flag("Folder for results; of several scenes with a folder in it for each").required(true))
         .arg(flag("resume").help("Measure only what is missing"))
         .arg(flag("force").conflicts_with("resume").help("Replace what is there"))
-        .arg(
-            Arg::new("shard")
-                .long("shard")
-                .value_name("I/N")
-                .value_parser(value_parser!(Shard))
-                .help("Measure only the I-th of N parts of the rows; `bench merge` joins them"),
-        )
+        .arg(shard_flag())
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("Device, by a part of its name or its index"))
         .arg(quiet_flag())
         .arg(flag("json").help("Print each row as a line of JSON"))

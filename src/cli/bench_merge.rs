@@ -1,6 +1,6 @@
 //! `quincunx bench merge`: rows of several folders, such as those of shards, as one.
 
-use super::output::{print, quiet_flag};
+use super::output::{folder_flag, print, quiet_flag};
 use super::progress;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
@@ -27,15 +27,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Folders with rows.jsonl, of one kind of benchmark"),
         )
-        .arg(
-            Arg::new("output")
-                .short('o')
-                .long("output")
-                .value_name("DIR")
-                .required(true)
-                .value_parser(value_parser!(PathBuf))
-                .help("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to"),
-        )
+        .arg(folder_flag("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to").required(true))
         .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace rows.jsonl"))
         .arg(quiet_flag())
 }

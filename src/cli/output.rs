@@ -1,8 +1,10 @@
 //! Printing what a verb has to say.
 
 use crate::error::{Error, Result};
-use clap::{Arg, ArgAction, ArgMatches};
+use clap::builder::StyledStr;
+use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use std::io::Write;
+use std::path::PathBuf;
 
 /// The flag that every verb has.
 pub fn quiet_flag() -> Arg {
@@ -10,6 +12,11 @@ pub fn quiet_flag() -> Arg {
         .long("quiet")
         .action(ArgAction::SetTrue)
         .help("Print nothing but errors, and what --json asks for")
+}
+
+/// `-o DIR`.
+pub fn folder_flag(help: impl Into<StyledStr>) -> Arg {
+    Arg::new("output").short('o').long("output").value_name("DIR").value_parser(value_parser!(PathBuf)).help(help)
 }
 
 /// Prints what is for a person's eyes, unless --quiet.

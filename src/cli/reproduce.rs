@@ -2,7 +2,7 @@
 
 use super::job_args::{Row, flag, rows};
 use super::listed::TechniqueSelection;
-use super::output::{print, print_text, quiet_flag};
+use super::output::{folder_flag, print, print_text, quiet_flag};
 use super::progress;
 use crate::error::{Error, Result};
 use crate::papers::item::{Item, Paper};
@@ -51,15 +51,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(u32).range(1..=10_000))
                 .help("Rounds of measurements, in place of the item's own; intervals need three"),
         )
-        .arg(
-            Arg::new("output")
-                .short('o')
-                .long("output")
-                .value_name("DIR")
-                .value_parser(value_parser!(PathBuf))
-                .default_value("out")
-                .help("Folder for results"),
-        )
+        .arg(folder_flag("Folder for results").default_value("out"))
         .arg(
             Arg::new("frames")
                 .long("frames")

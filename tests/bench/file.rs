@@ -104,6 +104,7 @@ fn rounds_go_on_until_intervals_are_narrow_or_it_is_enough() {
     let sweep = ["--sweep", "split=none,one-pass", "--json", "--quiet", "--until-interval"];
     let pairs = |part: &str| {
         let rows = lines(&program.run(&bench("frame", &[&sweep[..], &[part]].concat())).fine().out);
+        assert_eq!(rows[1]["until_interval"].as_f64(), part.parse().ok());
         rows[1]["ratio"]["pairs"].as_u64().unwrap()
     };
     // No machine is so even.
