@@ -4,7 +4,7 @@
 use super::job_args;
 use super::listed::TechniqueSelection;
 use crate::caps::{file, known};
-use crate::cli::output::{print, print_text};
+use crate::cli::output::{folder_flag, print, print_text};
 use crate::error::{Error, Result};
 use crate::report::memory::MemoryReport;
 use crate::report::memory::difference::{Difference, Side};
@@ -17,7 +17,8 @@ use crate::study::{self, Study};
 use crate::techniques::Rival;
 use crate::units::Bytes;
 use crate::whole_file::{read_document, write_whole};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -49,17 +50,10 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 .action(ArgAction::Append)
                 .help("Stages to plan for reading back: they live until the frame's end"),
         )
-        .arg(
-            Arg::new("output")
-                .short('o')
-                .long("output")
-                .value_name("DIR")
-                .value_parser(value_parser!(PathBuf))
-                .help(
-                    "Folder to write memory-TECHNIQUE.txt, .json, .lifetimes.svg, .blocks.svg and .vma.json (the last two \
-                     where memory is made) and index.html to",
-                ),
-        )
+        .arg(folder_flag(
+            "Folder to write memory-TECHNIQUE.txt, .json, .lifetimes.svg, .blocks.svg and .vma.json (the last two where memory is \
+             made) and index.html to",
+        ))
         .arg(
             Arg::new("smallest-budget")
                 .long("smallest-budget")
@@ -73,7 +67,7 @@ pub fn command(listed: &TechniqueSelection) -> Command {
             .action(ArgAction::Append)
             .help("Technique to plan; may be repeated; each setting must be read by one of them; with --help: list their settings")
     })
-    .arg(Arg::new("other").value_name("B.json").conflicts_with_all(["plan", "output", "technique"]).help(
+    .arg(Arg::new("other").value_name("B.json").help(
         "With SCENE also a file that -o or --json wrote: what the second differs in from the first",
     ))
 }
@@ -177,6 +171,12 @@ fn write_pictures(study: &Study, file: &impl Fn(&str) -> PathBuf) -> Result<()> 
 
 /// Prints what the second of two files differs in from the first.
 fn difference(matches: &ArgMatches, second: &str) -> Result<()> {
+    let read_flags = ["scene", "other", "json", "quiet"];
+    let is_typed = |id: &&str| matches.value_source(id) == Some(ValueSource::CommandLine);
+    let ids = matches.ids().map(|id| id.as_str());
+    if let Some(flag) = ids.filter(is_typed).find(|id| !read_flags.contains(id)) {
+        return Err(Error::request(format!("memory A.json B.json: nothing reads --{flag} there")));
+    }
     let first = matches.get_one::<String>("scene").expect("it comes before");
     let [before, after] = [first, second].map(|path| read(Path::new(path)));
     let (before, after) = (before?, after?);

@@ -1,4 +1,4 @@
-//! What HTML pages have in common: one file that needs nothing else, readable on a phone, in the dark and in print, whose tables sort.
+//! What HTML pages have in common: one file that needs nothing else, readable on a phone and in the dark, whose tables sort.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 

@@ -11,6 +11,7 @@ use crate::resident::SceneStats;
 use crate::scene::Scene;
 use crate::session::Planned;
 use crate::techniques::Inputs;
+use std::collections::BTreeMap;
 
 /// A driver that is not there.
 #[derive(Clone, Copy)]
@@ -25,15 +26,18 @@ pub struct Plans {
     pub(super) scene: Plan,
     pub(super) frame: Plan,
     pub(super) sharing: Sharing,
+    /// What `auto` and percentages of its settings came to.
+    pub(super) resolved: BTreeMap<&'static str, String>,
 }
 
 impl Plans {
     /// Errors: as `planned`.
     pub(super) fn new(job: &Job, scene: &Scene, bvh: &LazyBvh, driver: Driver<'_>) -> Result<Self> {
         with_inputs(job, scene, bvh, driver, |inputs| {
-            let frame = Planned::new(job.technique, inputs, &job.aovs)?.plan;
+            let Planned { prepared, plan: frame } = Planned::new(job.technique, inputs, &job.aovs)?;
+            let resolved = prepared.resolved();
             let sharing = Sharing::of(&frame, driver.requirements, driver.caps, &job.values);
-            Ok(Self { scene: inputs.stats.plan(), frame, sharing })
+            Ok(Self { scene: inputs.stats.plan(), frame, sharing, resolved })
         })
     }
 }

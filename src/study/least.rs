@@ -1,18 +1,14 @@
 //! A `--memory-budget` under which a technique runs while it does not with a mebibyte less, and what it gives up there.
 
-use super::budget::{self, Copies};
-use super::driver::{Driver, Plans, with_inputs};
+use super::driver::Driver;
+use super::trials::{Fitting, MIB, Trials};
 use crate::bvh::LazyBvh;
 use crate::caps::Caps;
-use crate::error::{ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 use crate::plan::Requirements;
-use crate::session::Planned;
 use crate::units::Bytes;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
-
-const MIB: u64 = 1 << 20;
 
 /// A setting that means something else under the smallest budget.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,51 +39,23 @@ pub fn least(job: &Job, caps: &Caps) -> Result<Least> {
     let rules = caps.rules();
     let driver = Driver { caps, requirements: Requirements::Rules(&rules) };
     let bvh = LazyBvh::default();
-    // Larger than any plan of a scene that a host holds.
-    let most = u64::MAX / (16 * MIB);
-    let mut scene = Some(job.load_scene()?);
-    let mut under = |budget: &str| -> Result<(u64, BTreeMap<String, String>)> {
-        let mut other = job.at(&job.values);
-        other.aovs = job.aovs.clone();
-        other.set("memory-budget", budget)?;
-        let textured = other.with_texturing(scene.take().expect("it is put back"), caps);
-        let tried = (|| {
-            let plans = Plans::new(&other, &textured, &bvh, driver)?;
-            let budget_bytes = other.values.bytes("memory-budget").unwrap_or(u64::MAX);
-            let bytes = budget::rehearse(&plans, &other, driver, budget_bytes, Copies::All)?;
-            let mut resolved: BTreeMap<String, String> = with_inputs(&other, &textured, &bvh, driver, |inputs| {
-                let prepared = Planned::new(other.technique, inputs, &other.aovs)?.prepared;
-                Ok(prepared.resolved().into_iter().map(|(key, value)| (key.to_owned(), value)).collect())
-            })?;
-            resolved.insert("texture-limit".to_owned(), textured.texturing.limit_px.to_string());
-            Ok((bytes, resolved))
-        })();
-        scene = Some(textured);
-        tried
-    };
-    let (whole_bytes, without) = under("none")?;
-    let mut enough = whole_bytes.div_ceil(MIB).max(1);
-    let mut too_little = 0;
+    let mut trials = Trials::new(job, job.load_scene()?, &bvh, driver);
+    let Fitting { bytes: whole_bytes, resolved: without } = trials.under("none")?;
     // Under a budget `auto` may mean what takes more than the whole does without one.
-    let mut with = loop {
-        match under(&format!("{enough}MiB")) {
-            Ok((_, resolved)) => break resolved,
-            Err(error) if error.kind() == ErrorKind::Memory && enough < most => too_little = enough,
-            Err(error) => return Err(error),
-        }
-        enough += enough.div_ceil(8);
-    };
+    let none = || Error::memory(format!("no --memory-budget up to four times {} is enough", Bytes(whole_bytes)));
+    let (mut enough, Fitting { resolved: mut with, .. }) = trials.enough(whole_bytes)?.ok_or_else(none)?;
+    let mut too_little = 0;
     while too_little + 1 < enough {
         let tried = too_little + (enough - too_little) / 2;
-        match under(&format!("{tried}MiB")) {
-            Ok((_, resolved)) => (enough, with) = (tried, resolved),
+        match trials.under(&format!("{tried}MiB")) {
+            Ok(Fitting { resolved, .. }) => (enough, with) = (tried, resolved),
             Err(error) if error.kind() == ErrorKind::Memory => too_little = tried,
             Err(error) => return Err(error),
         }
     }
     let given_up = without.iter().filter_map(|(setting, without)| {
         let with = with.get(setting).filter(|with| *with != without)?;
-        Some(GivenUp { setting: setting.clone(), without: without.clone(), with: with.clone() })
+        Some(GivenUp { setting: (*setting).to_owned(), without: without.clone(), with: with.clone() })
     });
     Ok(Least { budget_bytes: enough * MIB, whole_bytes, given_up: given_up.collect() })
 }

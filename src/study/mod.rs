@@ -6,6 +6,8 @@ mod driver;
 pub mod heaps;
 pub mod least;
 pub mod page;
+mod placed;
+mod trials;
 
 use crate::bvh::LazyBvh;
 use crate::caps::{Caps, HeapBudget};
@@ -45,7 +47,7 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
     let driver = Driver { caps, requirements: Requirements::Rules(&rules) };
     let plans = Plans::new(job, &scene, &bvh, driver)?;
-    let Plans { scene: kept, frame, sharing } = &plans;
+    let Plans { scene: kept, frame, sharing, .. } = &plans;
     let table = MemoryTable::new(kept, frame, sharing.clone(), driver.requirements, &Kinds::new(caps), None)?;
     let budget = match job.values.bytes("memory-budget") {
         None => Ok(()),

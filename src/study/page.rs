@@ -3,8 +3,7 @@
 use super::Study;
 use crate::page;
 use crate::report::memory::drawing::{Drawing, PICTURES};
-use crate::report::memory::{MemoryReport, MemoryRow, Waste};
-use crate::units::Bytes;
+use crate::report::memory::{MemoryReport, MemoryRow};
 use maud::{Markup, html};
 
 /// A technique's study.
@@ -31,17 +30,11 @@ pub fn text(all: &[Shown<'_>]) -> String {
 
 fn section(Shown { technique, study }: &Shown<'_>) -> Markup {
     let report = study.table.report();
-    let sums = &report.sums;
     html! {
         section {
             h2 { (technique) " on " (study.scene) ", " (study.device) }
-            p {
-                (Bytes(sums.planned_bytes)) " planned, "
-                (Bytes(sums.allocated_bytes.unwrap_or_default())) " allocated, "
-                (Bytes(sums.aliased_bytes.unwrap_or_default())) " of it saved by sharing, peak "
-                (Bytes(sums.peak_bytes)) " in " code { (sums.peak_pass.as_deref().unwrap_or_default()) } "."
-            }
-            @if let Some(waste) = &report.waste { (of_no_use(waste)) }
+            p { (report.sums_in_words()) "." }
+            @if let Some(waste) = report.waste_in_words() { p { "Of no use: " (waste) "." } }
             @for (_, draw) in PICTURES { @if let Some(drawing) = draw(&report) { (picture(&drawing)) } }
             (passes(&report))
             (resources(&report))
@@ -53,17 +46,6 @@ fn picture(drawing: &Drawing) -> Markup {
     html! {
         h3 { (drawing.title) }
         div.scroll { (drawing.inline()) }
-    }
-}
-
-fn of_no_use(waste: &Waste) -> Markup {
-    html! {
-        p {
-            "Of no use: " (Bytes(waste.padding_bytes)) " padding, " (Bytes(waste.alignment_bytes)) " of alignment, "
-            (Bytes(waste.idle_bytes)) " idle where most lives"
-            @if let Some(free) = waste.free_bytes { ", " (Bytes(free)) " free in memory blocks" }
-            "."
-        }
     }
 }
 
@@ -100,11 +82,6 @@ fn resources(report: &MemoryReport) -> Markup {
         ("memory type", false),
     ];
     let row = |row: &MemoryRow| {
-        let lives = match (&row.first_pass, &row.last_pass) {
-            (Some(first), Some(last)) if first == last => first.clone(),
-            (Some(first), Some(last)) => format!("{first} to {last}"),
-            _ => "every frame".to_owned(),
-        };
         let shares = row.arena.as_ref().map(|arena| arena.shares_with.join(", ")).unwrap_or_default();
         vec![
             word(&row.name),
@@ -113,7 +90,7 @@ fn resources(report: &MemoryReport) -> Markup {
             bytes(row.bound_bytes),
             bytes(row.alignment_bytes),
             word(&row.kind),
-            word(&lives),
+            word(&row.lives_in(|pass| pass)),
             word(&shares),
             word(&format!("{}: {}", row.memory_type, row.reason)),
         ]

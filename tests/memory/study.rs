@@ -197,6 +197,8 @@ fn two_studies_are_compared_resource_by_resource() {
     // A report of a picture has memory too; what has none is refused.
     program.run(&[&["render"], &SMALL[..], &["2x2", "-o", "a.png", "--report", "a.json"]].concat()).fine();
     program.run(&["memory", "a.json", &files[0]]).fine();
+    program.fails(&["memory", &files[0], &files[1], "--size", "32x18"], 2, &["nothing reads --size"]);
+    program.fails(&["memory", &files[0], &files[1], "--plan"], 2, &["nothing reads --plan"]);
     std::fs::write(program.path("none.json"), "{}").unwrap();
     program.fails(&["memory", &files[0], "none.json"], 2, &["none.json", "no memory", "render --report"]);
     program.fails(&["memory", &files[0], "nowhere.json"], 2, &["nowhere.json"]);

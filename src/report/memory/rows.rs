@@ -60,6 +60,17 @@ pub struct MemoryRow {
     pub kind: String,
 }
 
+impl MemoryRow {
+    /// In which passes it lives, each called as `name` calls it.
+    pub fn lives_in(&self, name: fn(&str) -> &str) -> String {
+        match (&self.first_pass, &self.last_pass) {
+            (Some(first), Some(last)) if first == last => name(first).to_owned(),
+            (Some(first), Some(last)) => format!("{} to {}", name(first), name(last)),
+            _ => "every frame".to_owned(),
+        }
+    }
+}
+
 /// The place of a resource that shares bytes with others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ArenaPlace {

@@ -26,11 +26,7 @@ impl MemoryReport {
             "resource", "asked, B", "bound, B", "align", "waste", "type", "what"
         )?;
         for row in &self.resources {
-            let lives = match (&row.first_pass, &row.last_pass) {
-                (Some(first), Some(last)) if first == last => short(first).to_owned(),
-                (Some(first), Some(last)) => format!("{} to {}", short(first), short(last)),
-                _ => "every frame".to_owned(),
-            };
+            let lives = row.lives_in(short);
             let lives = match &row.arena {
                 Some(arena) => format!("{lives}, shared from {}", arena.offset),
                 None => lives,
@@ -61,26 +57,34 @@ impl MemoryReport {
         for (group, bytes) in self.sums.groups.iter().flatten() {
             writeln!(text, "{group:<18} {}", Bytes(*bytes))?;
         }
+        writeln!(text, "{}", self.sums_in_words())?;
+        self.waste_in_words().map_or(Ok(()), |waste| writeln!(text, "of no use: {waste}"))
+    }
+
+    /// The sums, without a full stop.
+    pub fn sums_in_words(&self) -> String {
         let sums = &self.sums;
-        writeln!(
-            text,
+        format!(
             "{} planned, {} allocated, {} of it saved by sharing, peak {} in {}",
             Bytes(sums.planned_bytes),
             Bytes(sums.allocated_bytes.unwrap_or_default()),
             Bytes(sums.aliased_bytes.unwrap_or_default()),
             Bytes(sums.peak_bytes),
             short(sums.peak_pass.as_deref().unwrap_or_default())
-        )?;
-        let Some(Waste { padding_bytes, alignment_bytes, idle_bytes, free_bytes }) = &self.waste else { return Ok(()) };
+        )
+    }
+
+    /// What is of no use, by reason, without a full stop; None in reports of before it was written.
+    pub fn waste_in_words(&self) -> Option<String> {
+        let Waste { padding_bytes, alignment_bytes, idle_bytes, free_bytes } = self.waste.as_ref()?;
         let free = free_bytes.map(|bytes| format!(", {} free in memory blocks", Bytes(bytes)));
-        writeln!(
-            text,
-            "of no use: {} padding, {} of alignment, {} idle where most lives{}",
+        Some(format!(
+            "{} padding, {} of alignment, {} idle where most lives{}",
             Bytes(*padding_bytes),
             Bytes(*alignment_bytes),
             Bytes(*idle_bytes),
             free.unwrap_or_default()
-        )
+        ))
     }
 
     /// A bar a pass: what lives in it, and behind it what it holds beside that.
