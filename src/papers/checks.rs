@@ -1,7 +1,7 @@
 //! Mistakes that data can have, looked for in all of it.
 
 use super::item::{Item, Paper, Scale, Verdict};
-use super::recipe::{Effort, Recipe, Source, Step, Verb};
+use super::recipe::{Differing, Effort, Recipe, Source, Step, Verb};
 use super::{all, find};
 use crate::bench::sweep::{axes, grid, label};
 use std::collections::HashSet;
@@ -102,6 +102,7 @@ fn every_number_and_picture_of_a_recipe_is_left_by_one_of_its_steps() {
                     let named = |stage: &str| step.words.iter().any(|word| word.split(',').any(|one| one == stage));
                     extension == "png" && (rest == Some("png") || stage.is_some_and(named))
                 }
+                Verb::Compare { picture: Differing::Map, .. } => *file == format!("{}.png", step.name),
                 Verb::Pattern { .. } => {
                     [format!("{}.png", step.name), format!("{}.spectrum.png", step.name)].contains(file)
                 }

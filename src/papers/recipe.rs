@@ -61,12 +61,21 @@ pub enum Verb {
     Bench { what: String, rounds: u32 },
     /// `render`: a picture of this extension, and its report.
     Render { extension: &'static str },
-    /// `compare` of two files: its document; with the spectrum of what they differ by, and a plot of it, where it is asked for.
-    Compare { files: [String; 2], has_spectrum: bool },
+    /// `compare` of two files: its document, and a picture of what they differ by.
+    Compare { files: [String; 2], picture: Differing },
     /// `memory`: its document.
     Memory,
     /// `sampling inspect` of a pattern: pictures of its samples and of its spectrum, and its document.
     Pattern { pattern: String },
+}
+
+/// What a comparison draws of what two pictures differ by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Differing {
+    /// FLIP's error map, a PNG.
+    Map,
+    /// The powers of its frequencies, an SVG; the document has them too.
+    Spectrum,
 }
 
 /// A number of ours.
@@ -188,15 +197,15 @@ impl Step {
         Self { name: name.into(), verb, scene: Some(scene.to_owned()), words: words(text) }
     }
 
-    /// `compare A B`, files of earlier steps.
+    /// `compare A B --diff NAME.png`, files of earlier steps.
     pub fn compare(name: impl Into<String>, files: [&str; 2]) -> Self {
-        let verb = Verb::Compare { files: files.map(str::to_owned), has_spectrum: false };
+        let verb = Verb::Compare { files: files.map(str::to_owned), picture: Differing::Map };
         Self { name: name.into(), verb, scene: None, words: Vec::new() }
     }
 
     /// `compare A B --spectrum NAME.svg`, files of earlier steps.
     pub fn spectrum(name: impl Into<String>, files: [&str; 2]) -> Self {
-        let verb = Verb::Compare { files: files.map(str::to_owned), has_spectrum: true };
+        let verb = Verb::Compare { files: files.map(str::to_owned), picture: Differing::Spectrum };
         Self { name: name.into(), verb, scene: None, words: Vec::new() }
     }
 

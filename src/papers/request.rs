@@ -1,6 +1,6 @@
 //! What a user wishes of a reproduction, and the words of a step's command that come of it.
 
-use super::recipe::{Effort, Step, Verb};
+use super::recipe::{Differing, Effort, Step, Verb};
 use crate::error::{Error, Result};
 use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique, settings_of};
 use std::path::PathBuf;
@@ -97,11 +97,12 @@ impl Step {
                 }
                 command.push("--json".to_owned());
             }
-            Verb::Compare { has_spectrum, .. } => {
-                if *has_spectrum {
-                    command.extend(["--spectrum".to_owned(), file(&format!("{name}.svg"))]);
-                }
-                command.push("--json".to_owned());
+            Verb::Compare { picture, .. } => {
+                let (flag, extension) = match picture {
+                    Differing::Map => ("--diff", "png"),
+                    Differing::Spectrum => ("--spectrum", "svg"),
+                };
+                command.extend([flag.to_owned(), file(&format!("{name}.{extension}")), "--json".to_owned()]);
             }
             Verb::Memory => command.push("--json".to_owned()),
         }

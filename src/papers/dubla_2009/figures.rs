@@ -135,6 +135,7 @@ fn figure_8(effort: Effort) -> Recipe {
         recipe.step(Step::render(&picture, "png", "office", &format!("{words} --exposure auto")));
         recipe.errors(0, mode, [&format!("{mode}.exr"), "paths.exr"], &["hdr_flip", "rmse", "over_threshold"]);
         recipe.picture(mode, format!("{picture}.png"));
+        recipe.picture(format!("{mode}, its difference from paths"), format!("{mode}-errors.png"));
     }
     recipe
 }

@@ -55,6 +55,12 @@ fn figure_1(effort: Effort) -> Recipe {
         let words = format!("--technique interleaved_sampling --size 256x256 --basis {basis} --samples 4");
         recipe.step(Step::render(&plate, "png", "zone-plate", &words));
         recipe.picture(format!("{title}: a zone plate"), format!("{plate}.png"));
+        let member = format!("member-{basis}");
+        let stage = "material.color";
+        let words =
+            format!("--technique interleaved_sampling --size 128x128 --basis {basis} --samples 4 --aov {stage}");
+        recipe.step(Step::render(&member, "png", "cornell", &words));
+        recipe.picture(format!("{title}: a member"), format!("{member}.{stage}.png"));
     }
     recipe
 }
