@@ -113,20 +113,11 @@ impl ClusterBoxes {
         for group in &self.groups {
             let mut kept: Vec<&Boxed> = Vec::with_capacity(group.clusters.len());
             kept.extend(self.all[group.clusters.clone()].iter().filter(|cluster| is_kept(&cluster.bounds)));
-            let culled_count = (group.clusters.len() - kept.len()) as u64;
             let index_count: u32 = kept.iter().map(|cluster| cluster.part.index_count).sum();
             let Casters { fine, coarse } = &mut casters;
             match group.coarsest(&may_be_off_m).filter(|level| level.part.index_count < index_count) {
-                Some(level) => {
-                    coarse.push(level.part);
-                    coarse.clusters_drawn += kept.len() as u64;
-                    coarse.clusters_culled += culled_count;
-                }
-                None => {
-                    kept.iter().for_each(|cluster| fine.push(cluster.part));
-                    fine.clusters_drawn += kept.len() as u64;
-                    fine.clusters_culled += culled_count;
-                }
+                Some(level) => coarse.push(level.part),
+                None => kept.iter().for_each(|cluster| fine.push(cluster.part)),
             }
         }
         casters
