@@ -23,7 +23,7 @@ pub struct Trials<'a> {
 
 /// What fits.
 pub struct Fitting {
-    /// Of memory blocks, what is on its way between host and device included.
+    /// Bytes of memory blocks, what is on its way between host and device included.
     pub bytes: u64,
     /// What `auto` and the like came to.
     pub resolved: BTreeMap<&'static str, String>,
