@@ -3,6 +3,7 @@
 //! The bytes go into a temporary file in the same folder (a rename across file systems would be a copy) and take the
 //! asked name when they are all on disk. A failure leaves the earlier file.
 
+use serde::de::DeserializeOwned;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -60,6 +61,18 @@ pub fn read_document(path: &Path) -> Result<String> {
         return Err(failed(&format!("it has {bytes} bytes; up to {MAX_DOCUMENT_BYTES} are read")));
     }
     std::fs::read_to_string(path).map_err(|error| failed(&error))
+}
+
+/// A document of TOML that a user writes.
+///
+/// Errors: as `read_document`; it is not what a `T` is read from (exit code 2), with the line.
+pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = read_document(path)?;
+    toml::from_str(&text).map_err(|error| {
+        let before = error.span().map(|span| text[..span.start].matches('\n').count());
+        let line = before.map(|lines| format!("line {}: ", lines + 1)).unwrap_or_default();
+        Error::request(format!("{}: {line}{}", path.display(), error.message()))
+    })
 }
 
 #[cfg(test)]

@@ -7,17 +7,18 @@ use super::rounds::{self, Length, Probe, Samples};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
+use crate::interrupt;
 use crate::job::Job;
 use crate::picture::Picture;
 use crate::session::Session;
 use crate::settings::Values;
 use crate::techniques::bench_stage::{BenchStage, Copying};
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::rc::Rc;
 
-/// Renderers on the device at once: pairs need company, and a long sweep must not need the memory of all its variants. Five
-/// copies with an identity each stand in one group with their baseline, so that their own ratios are known.
-const MAX_RENDERERS: usize = 11;
+/// Variants in a group beside the baseline: pairs need company, and a long sweep must not need the memory of all its variants. Copies
+/// have an identity each, and five of them stand in one group with their baseline, so that their own ratios are known.
+pub const MOST_VARIANTS: usize = 10;
 
 /// Place of the baseline among the probes.
 pub const BASELINE: usize = 0;
@@ -43,6 +44,8 @@ pub struct Group {
     probes: Vec<Rc<dyn Probe>>,
     pub members: Vec<Member>,
     renderer_count: usize,
+    /// Renderers on the device at once.
+    most_renderers: usize,
     identities: HashMap<String, Companion>,
     copies: HashMap<u64, Companion>,
 }
@@ -79,16 +82,23 @@ impl<'a> Measurement<'a> {
 }
 
 impl Group {
-    /// A group with the baseline, which is measured in every group and is a member of one.
-    pub fn new(baseline: &Rc<Variant>) -> Self {
-        let probes: Vec<Rc<dyn Probe>> = vec![baseline.clone()];
-        Self { probes, members: Vec::new(), renderer_count: 1, identities: HashMap::new(), copies: HashMap::new() }
+    /// A group with the baseline, which is measured in every group and is a member of one, and with `most` variants beside it,
+    /// what they are compared with among them.
+    pub fn new(baseline: &Rc<Variant>, most: usize) -> Self {
+        Self {
+            probes: vec![baseline.clone()],
+            members: Vec::new(),
+            renderer_count: 1,
+            most_renderers: 1 + most,
+            identities: HashMap::new(),
+            copies: HashMap::new(),
+        }
     }
 
     /// Whether a variant, and its identity, still have a place.
-    pub fn has_room(&self, what: What) -> bool {
+    fn has_room(&self, what: What) -> bool {
         let next = 1 + usize::from(what.copies());
-        self.members.is_empty() || self.renderer_count + next <= MAX_RENDERERS
+        self.members.is_empty() || self.renderer_count + next <= self.most_renderers
     }
 
     /// Adds the baseline as a member.
@@ -107,7 +117,7 @@ impl Group {
     ///
     /// Errors: as `Measurement::variant` has them; and where others are in the group, memory for what stands beside it (exit
     /// code 4): with fewer of them there may be enough.
-    pub fn add(&mut self, measurement: &Measurement<'_>, candidate: usize, values: &Values) -> Result<()> {
+    fn add(&mut self, measurement: &Measurement<'_>, candidate: usize, values: &Values) -> Result<()> {
         let variant = Rc::new(measurement.variant(values)?);
         let [identity, copy] = self.companions(measurement, &variant, values);
         if !self.members.is_empty() {
@@ -120,6 +130,37 @@ impl Group {
         let probe = self.push(variant.clone());
         self.members.push(Member { candidate, variant, probe, identity, copy });
         Ok(())
+    }
+
+    /// Adds as many of those that wait as have room, at least one where one is possible. Returns those that are impossible.
+    ///
+    /// Errors: the device fails (exit code 4); interrupted (130).
+    pub fn fill(
+        &mut self,
+        measurement: &Measurement<'_>,
+        candidates: &[Candidate],
+        waiting: &mut VecDeque<usize>,
+    ) -> Result<Vec<(usize, Error)>> {
+        let mut refused = Vec::new();
+        while self.has_room(measurement.what)
+            && let Some(index) = waiting.front().copied()
+        {
+            interrupt::check()?;
+            let candidate = &candidates[index];
+            let added = match &candidate.values {
+                Ok(values) => self.add(&measurement.of(candidate), index, values),
+                Err(error) => Err(error.clone()),
+            };
+            match added {
+                Ok(()) => {}
+                // It may fit where fewer are.
+                Err(error) if is_of_memory(&error) && !self.members.is_empty() => break,
+                Err(error) if is_impossible(&error) => refused.push((index, error)),
+                Err(error) => return Err(error),
+            }
+            waiting.pop_front();
+        }
+        Ok(refused)
     }
 
     /// Identity and copy, of a copying stage.
@@ -169,7 +210,7 @@ impl Group {
     /// Errors: the device fails (exit code 4); interrupted (130).
     pub fn pictures(&self) -> Result<Vec<Picture>> {
         let picture = |member: &Member| {
-            crate::interrupt::check()?;
+            interrupt::check()?;
             member.variant.renderer.frame()?;
             member.variant.renderer.picture()
         };
@@ -183,8 +224,13 @@ impl Group {
     }
 }
 
+/// Whether a variant that fails like this, before a frame ran, is passed over with its reason.
+pub fn is_impossible(error: &Error) -> bool {
+    matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Memory)
+}
+
 /// Whether fewer renderers on the device might help.
-pub fn is_of_memory(error: &Error) -> bool {
+fn is_of_memory(error: &Error) -> bool {
     error.kind() == ErrorKind::Memory
 }
 

@@ -15,6 +15,7 @@ pub mod group;
 pub mod head;
 pub mod machine;
 pub mod numbers;
+pub mod page;
 pub mod pareto;
 pub mod rates;
 pub mod rates_plot;

@@ -2,9 +2,10 @@
 
 use super::candidate::{Candidate, require_readers};
 use super::frames::Sequence;
-use super::group::{Group, Measurement, is_of_memory};
+use super::group::{Group, Measurement, is_impossible};
 use super::head::{Head, Rounds};
 use super::machine::{Load, Ticks};
+use super::page::picture_file;
 use super::reference::References;
 use super::rounds::Length;
 use super::row::BenchRow;
@@ -17,11 +18,16 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::DeviceRequest;
 use crate::interrupt;
 use crate::job::{Job, fail_on_validation};
+use crate::picture::Picture;
+use crate::picture::image_file::{self, WriteOptions};
+use crate::picture::tonemap::exposure_for;
 use crate::reference::ReferenceRequest;
 use crate::sequence::Frames;
+use crate::settings::Values;
 use std::collections::VecDeque;
+use std::path::Path;
 use std::rc::Rc;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// What is asked for.
 pub struct Request<'a> {
@@ -42,8 +48,15 @@ pub struct Request<'a> {
     pub is_fair: bool,
     /// Measures only rows of its own; None: all of them.
     pub shard: Option<Shard>,
+    /// The folder of the sweep, where the picture of each row goes; None: nowhere.
+    pub pictures: Option<&'a Path>,
+    /// Variants that are measured in turn, beside the baseline; up to `MOST_VARIANTS`. Rows are written when those of a group are
+    /// done.
+    pub group: usize,
     /// Frames of a sequence instead of one moment: only of `What::Frame`.
     pub frames: Option<&'a Frames>,
+    /// No group but the first begins after it: rows that are not there then are left out. None: all are measured.
+    pub deadline: Option<Instant>,
 }
 
 /// What came out.
@@ -134,11 +147,6 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     Ok(Rows { rows, interrupted, gates })
 }
 
-/// Whether a point that fails like this, before a frame ran, is passed over with its reason.
-fn is_impossible(error: &Error) -> bool {
-    matches!(error.kind(), ErrorKind::Request | ErrorKind::NoDevice | ErrorKind::Memory)
-}
-
 /// What the parts of a sweep leave.
 struct Found {
     /// By place in the grid.
@@ -162,6 +170,10 @@ struct Sweep<'a> {
     found: &'a mut Found,
     file: Option<&'a mut RowsFile>,
     observer: &'a mut dyn Observer,
+    /// As `Request` has them.
+    deadline: Option<Instant>,
+    most: usize,
+    pictures: Option<&'a Path>,
 }
 
 impl<'a> Sweep<'a> {
@@ -202,7 +214,21 @@ impl<'a> Sweep<'a> {
         let is_own = |index: &usize| request.shard.is_none_or(|shard| shard.has(&head.row(&candidates[*index])));
         let points: Vec<usize> = points.iter().copied().filter(is_own).collect();
         points.iter().for_each(|index| found.rows[*index] = kept(&candidates[*index]));
-        Ok(Self { head, candidates, points, baseline, baseline_variant, refused, found, file, observer })
+        let Request { deadline, group: most, pictures, .. } = *request;
+        Ok(Self {
+            head,
+            candidates,
+            points,
+            baseline,
+            baseline_variant,
+            refused,
+            found,
+            file,
+            observer,
+            deadline,
+            most,
+            pictures,
+        })
     }
 
     fn measure(&mut self) -> Result<()> {
@@ -211,7 +237,12 @@ impl<'a> Sweep<'a> {
         }
         let mut waiting: VecDeque<usize> =
             self.points.iter().copied().filter(|index| *index != self.baseline && !self.is_known(*index)).collect();
+        let mut is_first = true;
         while !waiting.is_empty() || self.is_missing(self.baseline) {
+            if !is_first && self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                break;
+            }
+            is_first = false;
             let group = self.gather(&mut waiting)?;
             if group.members.is_empty() {
                 continue;
@@ -238,28 +269,14 @@ impl<'a> Sweep<'a> {
 
     /// The next group: as many of those that wait as have room.
     fn gather(&mut self, waiting: &mut VecDeque<usize>) -> Result<Group> {
-        let mut group = Group::new(&self.baseline_variant);
+        let mut group = Group::new(&self.baseline_variant, self.most);
         if self.is_missing(self.baseline) {
             let values = self.candidates[self.baseline].values.clone()?;
             let measurement = self.head.measurement.of(&self.candidates[self.baseline]);
             group.add_baseline(&measurement, self.baseline, &self.baseline_variant, &values);
         }
-        while group.has_room(self.head.measurement.what)
-            && let Some(index) = waiting.front().copied()
-        {
-            interrupt::check()?;
-            let added = match &self.candidates[index].values {
-                Ok(values) => group.add(&self.head.measurement.of(&self.candidates[index]), index, values),
-                Err(error) => Err(error.clone()),
-            };
-            match added {
-                Ok(()) => {}
-                // It may fit where fewer are.
-                Err(error) if is_of_memory(&error) && !group.members.is_empty() => break,
-                Err(error) if is_impossible(&error) => self.skip(index, &error)?,
-                Err(error) => return Err(error),
-            }
-            waiting.pop_front();
+        for (index, error) in group.fill(&self.head.measurement, self.candidates, waiting)? {
+            self.skip(index, &error)?;
         }
         Ok(group)
     }
@@ -303,6 +320,9 @@ impl<'a> Sweep<'a> {
                     Err(error) => return Err(error),
                 }
             }
+            if let Some(folder) = self.pictures {
+                write_picture(folder, &row, picture, values)?;
+            }
             self.emit(member.candidate, row)?;
         }
         Ok(())
@@ -325,6 +345,19 @@ impl<'a> Sweep<'a> {
         self.found.rows[index] = Some(row);
         Ok(())
     }
+}
+
+/// Writes the picture of a row, as a PNG of `render` with these values; one that is there is of the same hash.
+///
+/// Errors: it cannot be written (exit code 2).
+fn write_picture(folder: &Path, row: &BenchRow, picture: &Picture, values: &Values) -> Result<()> {
+    let Some(file) = picture_file(folder, row).filter(|file| !file.exists()) else { return Ok(()) };
+    let parent = file.parent().expect("it is in a folder");
+    std::fs::create_dir_all(parent).map_err(|error| Error::request(format!("{}: {error}", parent.display())))?;
+    let exposure_ev =
+        values.unless_auto("exposure", Values::number).or_else(|| exposure_for(picture)).unwrap_or_default();
+    let options = WriteOptions { exposure_ev, tone_map: values.choice("tonemap"), ..WriteOptions::default() };
+    image_file::write(&file, picture, &options)
 }
 
 fn possible(measurement: &Measurement<'_>, candidate: &Candidate) -> Result<Variant> {

@@ -3,6 +3,7 @@
 use super::best::{self, Best};
 use super::csv_file;
 use super::machine::BUSY_SHARE;
+use super::page::{self, Shown};
 use super::pareto;
 use super::rates::{self, Rate};
 use super::rates_plot;
@@ -23,6 +24,7 @@ use std::path::Path;
 /// A finished sweep, or the part of it that was.
 pub struct Summary {
     what: What,
+    axes: Vec<Axis>,
     rows: Vec<BenchRow>,
     best: Vec<Best>,
     /// How fast errors fall with the setting of `--rate`.
@@ -36,7 +38,7 @@ impl Summary {
         pareto::mark(&mut rows);
         // What another stage's sweeps tell is no choice of this one's.
         let best = what.tuned().map_or_else(Vec::new, |key| best::best(key, axes, &rows));
-        Self { what, rows, best, rates: None, command: command.to_vec() }
+        Self { what, axes: axes.to_vec(), rows, best, rates: None, command: command.to_vec() }
     }
 
     /// With how fast errors fall with `key`, one of the axes.
@@ -83,7 +85,7 @@ impl Summary {
     }
 
     pub fn markdown(&self) -> String {
-        let title = format!("bench {}: {}", self.what.name(), self.place());
+        let title = self.title();
         let table = Table::new(self.what, &self.rows).markdown();
         let mut text = format!("# {title}\n\n{}\n\n    {}\n\n{table}", self.legend(), self.command.join(" "));
         let notes = self.notes();
@@ -97,18 +99,39 @@ impl Summary {
         text
     }
 
+    fn title(&self) -> String {
+        format!("bench {}: {}", self.what.name(), self.place())
+    }
+
+    /// The page of the rows that lie in `folder`.
+    ///
+    /// Errors: a picture cannot be read (exit code 2).
+    fn page(&self, folder: &Path) -> Result<String> {
+        page::text(&Shown {
+            title: &self.title(),
+            legend: &self.legend(),
+            notes: &self.notes(),
+            command: &self.command,
+            axes: &self.axes,
+            rows: &self.rows,
+            folder,
+        })
+    }
+
     /// What stands behind the notes; nothing without `--rate`.
     fn rates_text(&self) -> String {
         self.rates.as_ref().map_or_else(String::new, |(key, rates)| format!("\n{}", rates::markdown(key, rates)))
     }
 
-    /// Writes `summary.json`, `summary.md` and `rows.csv`, and where there are rates `rates.svg`.
+    /// Writes `summary.json`, `summary.md`, `rows.csv` and `index.html`, and where there are rates `rates.svg`.
     ///
-    /// Errors: they cannot be written (exit code 2).
+    /// Errors: they cannot be written, or a picture of the rows cannot be read (exit code 2).
     pub fn write(&self, folder: &Path) -> Result<()> {
         write_whole(&folder.join("summary.json"), |out| writeln!(out, "{:#}", self.json()))?;
         write_whole(&folder.join("summary.md"), |out| out.write_all(self.markdown().as_bytes()))?;
         csv_file::write(folder, &self.rows)?;
+        let page = self.page(folder)?;
+        write_whole(&folder.join("index.html"), |out| out.write_all(page.as_bytes()))?;
         let Some((key, rates)) = &self.rates else { return Ok(()) };
         write_whole(&folder.join("rates.svg"), |out| out.write_all(rates_plot::svg(key, rates).as_bytes()))
     }

@@ -5,6 +5,7 @@ use super::output;
 use super::{bench_file, bench_merge, frames_args, job_args, progress, rays, reference_args};
 use crate::bench::candidate::TECHNIQUE;
 use crate::bench::fail_if::Condition;
+use crate::bench::group::MOST_VARIANTS;
 use crate::bench::rates;
 use crate::bench::rounds::MOST_TIMES;
 use crate::bench::row::BenchRow;
@@ -109,7 +110,7 @@ fn sub_command(what: What) -> Command {
              this flag each row shades as many as suit it best, up to 32 where threads share a list of lights and 1 where \
              they do not",
         ))
-        .arg(output::folder_flag("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to"))
+        .arg(output::folder_flag("Folder to write rows.jsonl, rows.csv, summary.json, summary.md and index.html to"))
         .arg(
             Arg::new("point").long("point").value_name("KEY=V KEY=V").action(ArgAction::Append).help(
                 "A row beside the grid, with these settings; may be repeated",
@@ -120,10 +121,19 @@ fn sub_command(what: What) -> Command {
              of it wide, such as 0.03"
         )))
         .arg(bench_file::shard_flag())
+        .arg(
+            Arg::new("group")
+                .long("group")
+                .value_name("N")
+                .value_parser(value_parser!(u32).range(1..=MOST_VARIANTS as i64))
+                .default_value(MOST_VARIANTS.to_string())
+                .help("Variants that are measured in turn, beside the baseline; their rows are written when all of them are done"),
+        )
         .arg(Arg::new("fail-if").long("fail-if").value_name("NAME>NUMBER").action(ArgAction::Append).help(
             "Fail with exit code 1 where this holds of a row, by the whole interval where there is one: time_ratio, median_ms, \
              planned_bytes, allocated_bytes, peak_bytes, an error such as rmse, or counters.NAME, > or < a number; may be repeated",
         ))
+        .arg(flag("pictures").help("Also write the picture of each row, into DIR/pictures, and show them on the page"))
         .arg(flag("resume").help("Measure only what DIR/rows.jsonl lacks"))
         .arg(flag("force").conflicts_with("resume").help("Replace DIR/rows.jsonl"))
 }
@@ -138,6 +148,8 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         _ => {}
     }
     let what = What::all().into_iter().find(|what| what.name() == name).expect("clap knows these only");
+    let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
+    progress::install(quiet);
     let mut job = job_args::job(matches, argv)?;
     job.reference = reference_args::asked(matches)?;
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
@@ -151,8 +163,6 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let rate = matches.get_one::<String>("rate").map(|key| rates::axis(key, &axes)).transpose()?;
     let folder = matches.get_one::<PathBuf>("output");
     let mut file = folder.map(|folder| rows_file(folder, matches)).transpose()?;
-    let (quiet, json) = (matches.get_flag("quiet"), matches.get_flag("json"));
-    progress::install(quiet);
     let frames = if what == What::Frame { frames_args::asked(matches)? } else { None };
     let request = Request {
         job: &job,
@@ -165,6 +175,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         points: &points,
         until_interval: matches.get_one::<f64>("until-interval").copied(),
         shard: matches.get_one::<Shard>("shard").copied(),
+        pictures: folder.filter(|_| matches.get_flag("pictures")).map(PathBuf::as_path),
+        group: *matches.get_one::<u32>("group").expect("it has a default") as usize,
+        deadline: None,
     };
     let found = run::run(&request, file.as_mut(), &mut Rounds { json, stage: None, pace: Pace::default() })?;
     let held = conditions.iter().try_for_each(|condition| condition.require_false(&found.rows));

@@ -4,7 +4,8 @@
 use super::output::{folder_flag, quiet_flag};
 use crate::bench::shard::Shard;
 use crate::error::{Error, Result};
-use crate::whole_file::read_document;
+use crate::settings::scalar::Scalar;
+use crate::whole_file::read_toml;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -12,27 +13,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 pub const NAME: &str = "run";
-
-/// A value as flags have it.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Scalar {
-    Switch(bool),
-    Integer(i64),
-    Number(f64),
-    Text(String),
-}
-
-impl fmt::Display for Scalar {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Switch(is_on) => f.write_str(if *is_on { "on" } else { "off" }),
-            Self::Integer(number) => number.fmt(f),
-            Self::Number(number) => number.fmt(f),
-            Self::Text(text) => text.fmt(f),
-        }
-    }
-}
 
 /// The file. Its keys are the flags of `bench`, without their dashes.
 #[derive(Default, Deserialize)]
@@ -43,8 +23,10 @@ struct Sweep {
     /// The technique's own scene where there is none.
     scenes: Vec<String>,
     technique: Option<String>,
+    preset: Option<String>,
     repeat: Option<u32>,
     until_interval: Option<f64>,
+    group: Option<u32>,
     baseline: Option<String>,
     fair: bool,
     frames: Option<String>,
@@ -75,7 +57,7 @@ pub fn command() -> Command {
     Command::new(NAME)
         .about("Measure what a file says: a grid, points beside it, scenes")
         .after_help(
-            "The file is TOML: bench, scenes, technique, repeat, until-interval, baseline, fair, frames, rate, reference, \
+            "The file is TOML: bench, scenes, technique, preset, repeat, until-interval, group, baseline, fair, frames, rate, reference, \
              reference-spp, fail-if; [settings] of all rows; [sweep] with a list for each axis; [[point]] for each row beside the \
              grid.",
         )
@@ -94,12 +76,7 @@ pub fn command() -> Command {
 /// Errors: the file cannot be read, or is no sweep (exit code 2).
 pub fn commands(matches: &ArgMatches) -> Result<Vec<Vec<String>>> {
     let path = matches.get_one::<PathBuf>("file").expect("clap requires it");
-    let text = read_document(path)?;
-    let sweep: Sweep = toml::from_str(&text).map_err(|error| {
-        let before = error.span().map(|span| text[..span.start].matches('\n').count());
-        let line = before.map(|lines| format!("line {}: ", lines + 1)).unwrap_or_default();
-        Error::request(format!("{}: {line}{}", path.display(), error.message()))
-    })?;
+    let sweep: Sweep = read_toml(path)?;
     let folder = matches.get_one::<PathBuf>("output").expect("clap requires it");
     let words = sweep.words(matches);
     let scenes: Vec<Option<&str>> = match &sweep.scenes[..] {
@@ -139,6 +116,7 @@ impl Sweep {
         let mut flag = |name: &str, value: &dyn fmt::Display| words.extend([format!("--{name}"), value.to_string()]);
         for (name, value) in [
             ("technique", &self.technique),
+            ("preset", &self.preset),
             ("baseline", &self.baseline),
             ("frames", &self.frames),
             ("rate", &self.rate),
@@ -147,6 +125,7 @@ impl Sweep {
             value.iter().for_each(|value| flag(name, value));
         }
         self.repeat.iter().for_each(|rounds| flag("repeat", rounds));
+        self.group.iter().for_each(|most| flag("group", most));
         self.until_interval.iter().for_each(|part| flag("until-interval", part));
         self.reference_spp.iter().for_each(|spp| flag("reference-spp", spp));
         self.fail_if.iter().for_each(|condition| flag("fail-if", condition));

@@ -2,6 +2,7 @@
 
 use super::output::{folder_flag, print, quiet_flag};
 use super::progress;
+use crate::bench::page::picture_file;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::{Existing, RowsFile};
 use crate::bench::summary::Summary;
@@ -11,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::progress::say;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::collections::HashSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub const NAME: &str = "merge";
 
@@ -27,7 +28,10 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Folders with rows.jsonl, of one kind of benchmark"),
         )
-        .arg(folder_flag("Folder to write rows.jsonl, rows.csv, summary.json and summary.md to").required(true))
+        .arg(
+            folder_flag("Folder to write rows.jsonl, rows.csv, summary.json, summary.md and index.html to")
+                .required(true),
+        )
         .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace rows.jsonl"))
         .arg(quiet_flag())
 }
@@ -37,9 +41,11 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     progress::install(matches.get_flag("quiet"));
     let mut seen = HashSet::new();
     let (mut rows, mut doubled): (Vec<BenchRow>, usize) = (Vec::new(), 0);
+    let mut pictures = Vec::new();
     for folder in matches.get_many::<PathBuf>("folders").expect("clap requires them") {
         for row in RowsFile::rows(folder)? {
             if seen.insert(row.key()) {
+                pictures.extend(picture_file(folder, &row).filter(|file| file.is_file()));
                 rows.push(row);
             } else {
                 doubled += 1;
@@ -61,6 +67,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let existing = if matches.get_flag("force") { Existing::Overwrite } else { Existing::Refuse };
     let mut file = RowsFile::open(folder, existing)?;
     rows.iter().try_for_each(|row| file.append(row))?;
+    if !pictures.is_empty() {
+        copy_into(&folder.join("pictures"), &pictures)?;
+    }
     let summary = Summary::new(what, &axes(&rows), rows, argv);
     summary.write(folder)?;
     if !matches.get_flag("quiet") {
@@ -68,6 +77,21 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     }
     if doubled > 0 {
         say(format!("{doubled} rows were there twice"));
+    }
+    Ok(())
+}
+
+/// Copies files, whose names say what they hold, into a folder.
+///
+/// Errors: one cannot be copied (exit code 2).
+fn copy_into(folder: &Path, files: &[PathBuf]) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("{}: {error}", folder.display())))?;
+    for file in files {
+        let copy = folder.join(file.file_name().expect("it is a file"));
+        if !copy.exists() {
+            std::fs::copy(file, &copy)
+                .map_err(|error| Error::request(format!("cannot copy {}: {error}", file.display())))?;
+        }
     }
     Ok(())
 }

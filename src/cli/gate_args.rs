@@ -29,7 +29,7 @@ pub fn gates(matches: &ArgMatches) -> Result<Vec<Gate>> {
         .into_iter()
         .flat_map(|bound| {
             let arguments = matches.get_many::<String>(bound.name()).into_iter().flatten();
-            arguments.map(move |argument| Gate::parse(bound, argument))
+            arguments.map(move |argument| Gate::parse(bound.name(), bound, argument))
         })
         .collect()
 }

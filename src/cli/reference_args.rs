@@ -2,6 +2,7 @@
 
 use super::gate_args;
 use crate::error::Result;
+use crate::metrics::gate::Gate;
 use crate::progress::say;
 use crate::reference::made::Watch;
 use crate::reference::recipe::Recipe;
@@ -9,9 +10,9 @@ use crate::reference::{DEFAULT_SPP, ReferenceRequest};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use std::time::Duration;
 
-/// Adds --reference, --reference-spp and the gates.
-pub fn with_reference_args(command: Command) -> Command {
-    let command = command
+/// Adds --reference and --reference-spp.
+pub fn with_bare_reference_args(command: Command) -> Command {
+    command
         .arg(Arg::new("reference").long("reference").value_name("FILE.exr|FILE.png|auto").help(
             "Reference that pictures are compared with, for the report's `errors`: a picture of the same size, or auto, \
              the path-traced picture of the same light transport, which is made unless it is kept from before",
@@ -23,8 +24,12 @@ pub fn with_reference_args(command: Command) -> Command {
                 .value_parser(value_parser!(u64).range(1..=65_536))
                 .requires("reference")
                 .help(format!("Samples a pixel for --reference auto [default: {DEFAULT_SPP}]")),
-        );
-    let command = gate_args::with_gate_args(command);
+        )
+}
+
+/// Adds them and the gates.
+pub fn with_reference_args(command: Command) -> Command {
+    let command = gate_args::with_gate_args(with_bare_reference_args(command));
     ["max", "min", "threshold"]
         .into_iter()
         .fold(command, |command, name| command.mut_arg(name, |arg| arg.requires("reference")))
@@ -34,9 +39,18 @@ pub fn with_reference_args(command: Command) -> Command {
 ///
 /// Errors: as `ReferenceRequest::new`; a bad gate or threshold (exit code 2).
 pub fn asked(matches: &ArgMatches) -> Result<Option<ReferenceRequest>> {
+    if !matches.contains_id("reference") {
+        return Ok(None);
+    }
+    asked_with(matches, gate_args::gates(matches)?, gate_args::threshold(matches)?)
+}
+
+/// The same where the gates are not typed as gates.
+///
+/// Errors: as `ReferenceRequest::new`.
+pub fn asked_with(matches: &ArgMatches, gates: Vec<Gate>, threshold: f64) -> Result<Option<ReferenceRequest>> {
     let Some(text) = matches.get_one::<String>("reference") else { return Ok(None) };
     let spp = matches.get_one::<u64>("reference-spp").copied().unwrap_or(DEFAULT_SPP);
-    let (gates, threshold) = (gate_args::gates(matches)?, gate_args::threshold(matches)?);
     ReferenceRequest::new(text, spp, threshold, gates, Box::new(Said)).map(Some)
 }
 

@@ -31,12 +31,12 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// `argument`: `METRIC=VALUE`.
+    /// `argument`: `METRIC=VALUE`; `flag`: what it was typed behind, without its dashes.
     ///
     /// Errors: no such metric, or no number (exit code 2).
-    pub fn parse(bound: Bound, argument: &str) -> Result<Self> {
+    pub fn parse(flag: &str, bound: Bound, argument: &str) -> Result<Self> {
         let refused = |cause: &str| {
-            let (flag, names) = (bound.name(), Metrics::NAMES.join(", "));
+            let names = Metrics::NAMES.join(", ");
             Error::request(format!("--{flag} {argument}: {cause}"))
                 .note(format!("for example --{flag} rmse=0.01; the metrics are {names}"))
         };
@@ -48,7 +48,18 @@ impl Gate {
         }
     }
 
-    fn measured(&self, metrics: &Metrics) -> f64 {
+    /// The metric's.
+    pub fn name(&self) -> &'static str {
+        self.measure.name
+    }
+
+    /// What is allowed.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// What it is.
+    pub fn measured(&self, metrics: &Metrics) -> f64 {
         (self.measure.value)(metrics)
     }
 

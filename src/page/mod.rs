@@ -1,5 +1,8 @@
 //! What HTML pages have in common: one file that needs nothing else, readable on a phone and in the dark, whose tables sort.
 
+pub mod pictures;
+pub mod scale;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A page of this title.

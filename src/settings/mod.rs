@@ -6,6 +6,7 @@
 mod forward;
 mod optics;
 pub mod readers;
+pub mod scalar;
 mod shadow_maps;
 mod tables;
 mod tree;

@@ -2,6 +2,7 @@
 
 mod file;
 mod frames;
+mod page;
 mod rates;
 mod rays;
 mod rows;

@@ -8,8 +8,8 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["cache_folder", "choice", "error", "page", "progress", "svg", "units"],
-    &["caps", "interrupt", "whole_file"],
+    &["choice", "error", "progress", "svg", "units", "user_folder"],
+    &["caps", "interrupt", "page", "whole_file"],
     &["sampling"],
     &["memory", "picture", "volume"],
     &["gpu", "metrics", "scene", "settings"],
@@ -19,13 +19,13 @@ const FLOORS: &[&[&str]] = &[
     &["passes"],
     &["techniques"],
     &["report"],
-    &["session"],
+    &["preset", "session"],
     &["reference"],
     &["continuation"],
     &["job"],
     &["sequence"],
     &["bench", "selftest", "study"],
-    &["papers"],
+    &["papers", "tune"],
     &["cli"],
     // The crate's front pages.
     &["lib", "main"],

@@ -3,15 +3,13 @@
 //! Two crates were looked at: plotters draws in colours of its own, which no dark page changes, and poloto, whose colours are
 //! CSS, has neither bounds nor lines that are words.
 
+use crate::page::scale::{Scale, short};
 use crate::papers::digits::digits;
 use crate::papers::outcome::{CellOutcome, TableOutcome};
 use maud::{Markup, html};
 
 /// Lines beyond which nobody reads a plot.
 const MOST_LINES: usize = 48;
-
-/// Ratio of the greatest number to the least from which on the scale is logarithmic.
-const LOGARITHMIC_FROM: f64 = 20.0;
 
 const LINE: f64 = 22.0;
 const LABELS: f64 = 300.0;
@@ -25,56 +23,6 @@ struct Line {
     published: Option<f64>,
     ours: Option<f64>,
     bounds: Option<[f64; 2]>,
-}
-
-/// From numbers to places across.
-struct Scale {
-    least: f64,
-    greatest: f64,
-    is_logarithmic: bool,
-}
-
-impl Scale {
-    /// None where there are no two different numbers, or one that is negative.
-    fn of(lines: &[Line]) -> Option<Self> {
-        let all = lines
-            .iter()
-            .flat_map(|line| line.published.into_iter().chain(line.ours).chain(line.bounds.into_iter().flatten()));
-        let all: Vec<f64> = all.filter(|number| number.is_finite()).collect();
-        let (least, greatest) =
-            all.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), number| (low.min(*number), high.max(*number)));
-        if least < 0.0 || greatest <= least {
-            return None;
-        }
-        let is_logarithmic = least > 0.0 && greatest / least > LOGARITHMIC_FROM;
-        let least = if is_logarithmic { least / 1.2 } else { 0.0 };
-        Some(Self { least, greatest: greatest * 1.05, is_logarithmic })
-    }
-
-    fn x(&self, number: f64) -> f64 {
-        let part = match self.is_logarithmic {
-            true => (number.max(self.least) / self.least).ln() / (self.greatest / self.least).ln(),
-            false => (number - self.least) / (self.greatest - self.least),
-        };
-        LABELS + part * (WIDTH - LABELS - RIGHT)
-    }
-
-    /// Round numbers to be marked.
-    fn ticks(&self) -> Vec<f64> {
-        if self.is_logarithmic {
-            let powers = self.least.log10().ceil() as i32..=self.greatest.log10().floor() as i32;
-            let powers: Vec<f64> = powers.map(|power| 10_f64.powi(power)).collect();
-            if powers.len() > 1 {
-                return powers;
-            }
-        }
-        let rough = (self.greatest - self.least) / 4.0;
-        let power = 10_f64.powf(rough.log10().floor());
-        let step =
-            [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
-        let first = (self.least / step).ceil() as i64;
-        (first..).map(|index| index as f64 * step).take_while(|tick| *tick <= self.greatest).collect()
-    }
 }
 
 /// Parts where the table has parts, else the numbers.
@@ -112,13 +60,16 @@ fn plot(table: &TableOutcome, is_in: impl Fn(&CellOutcome) -> bool, unit: &str) 
     if !(2..=MOST_LINES).contains(&lines.len()) {
         return None;
     }
-    let scale = Scale::of(&lines)?;
+    let numbers = lines
+        .iter()
+        .flat_map(|line| line.published.into_iter().chain(line.ours).chain(line.bounds.into_iter().flatten()));
+    let scale = Scale::of(numbers, [LABELS, WIDTH - RIGHT])?;
     let bottom = lines.len() as f64 * LINE;
     Some(html! {
         div.scroll {
             svg role="img" aria-label={ (table.title) ", " (unit) } viewBox={ "0 0 " (WIDTH) " " (bottom + BOTTOM + 14.0) } {
                 @for tick in scale.ticks() {
-                    @let x = scale.x(tick);
+                    @let x = scale.place(tick);
                     line.grid x1=(x) x2=(x) y1="0" y2=(bottom) {}
                     text.tick x=(x) y=(bottom + 14.0) { (short(tick)) }
                 }
@@ -126,21 +77,15 @@ fn plot(table: &TableOutcome, is_in: impl Fn(&CellOutcome) -> bool, unit: &str) 
                 @for (index, one) in lines.iter().enumerate() {
                     @let y = (index as f64 + 0.5) * LINE;
                     text.label x=(LABELS - 10.0) y=(y + 4.0) { (cut(&one.name)) title { (one.name) } }
-                    @if let Some([low, high]) = one.bounds { line.bounds x1=(scale.x(low)) x2=(scale.x(high)) y1=(y) y2=(y) {} }
-                    @if let Some(ours) = one.ours { circle.ours cx=(scale.x(ours)) cy=(y) r="4.5" { title { "ours: " (digits(ours)) } } }
+                    @if let Some([low, high]) = one.bounds { line.bounds x1=(scale.place(low)) x2=(scale.place(high)) y1=(y) y2=(y) {} }
+                    @if let Some(ours) = one.ours { circle.ours cx=(scale.place(ours)) cy=(y) r="4.5" { title { "ours: " (digits(ours)) } } }
                     @if let Some(theirs) = one.published {
-                        circle.published cx=(scale.x(theirs)) cy=(y) r="5" { title { "published: " (digits(theirs)) } }
+                        circle.published cx=(scale.place(theirs)) cy=(y) r="5" { title { "published: " (digits(theirs)) } }
                     }
                 }
             }
         }
     })
-}
-
-/// A tick's number without what says nothing.
-fn short(tick: f64) -> String {
-    let text = format!("{tick:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// As much of a name as has room.
@@ -156,27 +101,9 @@ fn cut(name: &str) -> String {
 mod tests {
     use super::*;
 
-    fn line(published: f64, ours: f64) -> Line {
-        Line { name: String::new(), published: Some(published), ours: Some(ours), bounds: None }
-    }
-
     #[test]
-    fn numbers_lie_where_their_scale_says() {
-        let scale = Scale::of(&[line(1.0, 4.0)]).unwrap();
-        assert!(!scale.is_logarithmic && scale.x(0.0) == LABELS);
-        assert!((scale.x(2.1) - (LABELS + WIDTH - RIGHT) / 2.0).abs() < 1e-9, "half of 4.2");
-        assert_eq!(scale.ticks(), [0.0, 2.0, 4.0]);
-        let wide = Scale::of(&[line(1.0, 1000.0)]).unwrap();
-        assert!(wide.is_logarithmic);
-        let [a, b, c] = [1.0, 10.0, 100.0].map(|number| wide.x(number));
-        assert!((c - b - (b - a)).abs() < 1e-9, "equal factors are equal ways");
-        assert_eq!(wide.ticks(), [1.0, 10.0, 100.0, 1000.0]);
-        assert!(Scale::of(&[line(1.0, 1.0)]).is_none() && Scale::of(&[line(-1.0, 1.0)]).is_none());
-    }
-
-    #[test]
-    fn ticks_and_names_are_short() {
-        assert_eq!((short(0.5), short(20.0), short(0.0)), ("0.5".to_owned(), "20".to_owned(), "0".to_owned()));
+    fn names_are_short() {
         assert_eq!(cut(&"a".repeat(50)).chars().count(), 44);
+        assert_eq!(cut("a"), "a");
     }
 }

@@ -1,8 +1,8 @@
 //! One item on the page.
 
-use super::{dots, pictures};
+use super::dots;
 use crate::error::Result;
-use crate::page;
+use crate::page::{self, pictures};
 use crate::papers::columns::{columns, missing};
 use crate::papers::outcome::{Outcome, TableOutcome};
 use maud::{Markup, html};
@@ -19,7 +19,8 @@ pub fn anchor(outcome: &Outcome) -> String {
 ///
 /// Errors: a picture cannot be read (exit code 2).
 pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
-    let pictures = pictures::markup(outcome, folder)?;
+    let files = outcome.pictures.iter().map(|picture| (picture.title.as_str(), folder.join(&picture.file)));
+    let pictures = pictures::markup(files)?;
     let device = outcome.device.as_ref().and_then(|device| device.get("name")?.as_str());
     let failed = || outcome.steps.iter().filter_map(|step| Some((&step.name, step.failed.as_ref()?)));
     Ok(html! {

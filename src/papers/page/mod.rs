@@ -2,7 +2,6 @@
 
 mod dots;
 mod item;
-mod pictures;
 
 use super::outcome::Outcome;
 use crate::error::Result;

@@ -1,22 +1,19 @@
-//! An item's pictures, within the page: one over another with a slider, and each by itself.
+//! Pictures within a page: one over another with a slider, and each by itself.
 
 use crate::error::{Error, Result};
-use crate::papers::outcome::Outcome;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, html};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A page with more would not open.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Nothing where there are no pictures.
+/// PNG files by their titles. Nothing where there are none.
 ///
 /// Errors: one cannot be read (exit code 2).
-pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
-    let pictures =
-        outcome.pictures.iter().map(|picture| Ok((picture.title.as_str(), data(&folder.join(&picture.file))?)));
-    let pictures: Vec<(&str, String)> = pictures.collect::<Result<_>>()?;
+pub fn markup<'a>(files: impl Iterator<Item = (&'a str, PathBuf)>) -> Result<Markup> {
+    let pictures: Vec<(&str, String)> = files.map(|(title, path)| Ok((title, data(&path)?))).collect::<Result<_>>()?;
     if pictures.is_empty() {
         return Ok(html! {});
     }
@@ -30,7 +27,7 @@ pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
     })
 }
 
-/// Two pictures of the item, chosen by name, and a line between them that moves.
+/// Two of the pictures, chosen by name, and a line between them that moves.
 fn slider(pictures: &[(&str, String)]) -> Markup {
     let choice = |name: &str, chosen: usize| {
         html! {
