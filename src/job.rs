@@ -53,6 +53,8 @@ pub struct Job {
     pub validate: bool,
     /// The argv that repeats it.
     pub command: Vec<String>,
+    /// Files of presets that some of the values are from, for the report.
+    pub presets: Vec<String>,
 }
 
 /// What a run leaves in memory.
@@ -120,6 +122,7 @@ impl Job {
             statistics: false,
             validate: false,
             command: Vec::new(),
+            presets: Vec::new(),
         }
     }
 
@@ -384,6 +387,7 @@ impl Job {
             schema: SCHEMA,
             quincunx: Program::this(),
             command: self.command.clone(),
+            presets: self.presets.clone(),
             device: DeviceRow::of(&session.gpu),
             technique: self.technique.name().to_owned(),
             estimator: self.technique.estimator_version(),

@@ -46,11 +46,11 @@
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
 //! | [`selftest`] | every method that a device supports beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
+//! | [`tune`] | settings chosen by measuring them on the machine at hand |
 //! | [`papers`] | what the papers publish, as data, and the commands that make it here |
 
 pub mod bench;
 pub mod bvh;
-pub mod cache_folder;
 pub mod caps;
 pub mod choice;
 pub mod cli;
@@ -70,6 +70,7 @@ pub mod papers;
 pub mod passes;
 pub mod picture;
 pub mod plan;
+pub mod preset;
 pub mod progress;
 pub mod reference;
 pub mod report;
@@ -84,7 +85,9 @@ pub mod shading;
 pub mod study;
 pub mod svg;
 pub mod techniques;
+pub mod tune;
 pub mod units;
+pub mod user_folder;
 pub mod volume;
 pub mod whole_file;
 

@@ -36,3 +36,4 @@ mod settings;
 mod shading;
 mod study;
 mod techniques;
+mod tune;

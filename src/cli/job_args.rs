@@ -4,10 +4,13 @@ use super::listed::{self, TechniqueSelection};
 use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::job::Job;
+use crate::preset::Presets;
+use crate::progress::say;
 use crate::settings::{COMMON, Kind, Setting};
 use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique, settings_of};
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use std::path::PathBuf;
 
 /// Adds SCENE, --technique, --device, --validate and every setting; help lists those of the techniques in `listed`.
 pub fn with_job_args(listed: &TechniqueSelection, command: Command) -> Command {
@@ -27,6 +30,14 @@ pub fn with_job_args(listed: &TechniqueSelection, command: Command) -> Command {
                 .help(format!(
                     "Technique that makes the picture [default: {DEFAULT_TECHNIQUE}]; with --help: list its settings"
                 )),
+        )
+        .arg(
+            Arg::new("preset")
+                .long("preset")
+                .value_name("FILE.toml")
+                .value_parser(value_parser!(PathBuf))
+                .action(ArgAction::Append)
+                .help("Settings from a file, such as `tune` writes; what is typed comes first, then later files; may be repeated"),
         )
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help(
             "Device, by a part of its name or its index in `quincunx devices`; default: a GPU before a processor",
@@ -128,47 +139,50 @@ fn value_name(setting: &Setting) -> &'static str {
     }
 }
 
-/// The technique that the flags name.
-pub fn technique(matches: &ArgMatches) -> Result<&'static dyn Technique> {
-    techniques::find(matches.get_one::<String>("technique").map_or(DEFAULT_TECHNIQUE, String::as_str))
-}
-
-/// The job that the flags describe.
+/// The job that the flags describe, and the presets that they name.
 ///
-/// Errors: a setting that the technique does not read, or an impossible value (exit code 2).
+/// Errors: a setting that the technique does not read, an impossible value, or a broken preset (exit code 2).
 pub fn job(matches: &ArgMatches, argv: &[String]) -> Result<Job> {
-    job_of(technique(matches)?, matches, argv, &[])
+    let mut jobs = jobs(matches, argv)?;
+    Ok(jobs.remove(0))
 }
 
-/// A job for each technique that the flags name.
+/// A job for each technique that the flags name, at least one.
 ///
-/// Errors: a setting that none of them reads, or an impossible value (exit code 2).
+/// Errors: a setting that none of them reads, an impossible value, or a broken preset (exit code 2).
 pub fn jobs(matches: &ArgMatches, argv: &[String]) -> Result<Vec<Job>> {
-    let names: Vec<&str> = match matches.get_many::<String>("technique") {
-        None => vec![DEFAULT_TECHNIQUE],
-        Some(names) => names.map(String::as_str).collect(),
+    let presets = Presets::read(matches.get_many::<PathBuf>("preset").into_iter().flatten())?;
+    let all = match matches.get_many::<String>("technique") {
+        None => vec![presets.technique().map_or_else(|| techniques::find(DEFAULT_TECHNIQUE), Ok)?],
+        Some(names) => names.map(|name| techniques::find(name)).collect::<Result<Vec<_>>>()?,
     };
-    let all = names.iter().map(|name| techniques::find(name)).collect::<Result<Vec<_>>>()?;
-    all.iter().map(|technique| job_of(*technique, matches, argv, &all)).collect()
+    all.iter().map(|technique| job_of(*technique, matches, &presets, argv, &all)).collect()
 }
 
 /// A setting that `technique` does not read is passed over where one of `others` does.
 fn job_of(
     technique: &'static dyn Technique,
     matches: &ArgMatches,
+    presets: &Presets,
     argv: &[String],
     others: &[&'static dyn Technique],
 ) -> Result<Job> {
     let scene = matches.get_one::<String>("scene").map_or(technique.scene(), String::as_str);
     let mut job = Job::new(scene, technique);
+    presets.set(technique, &mut job.values)?;
+    let mut typed = Vec::new();
     for Row { setting, .. } in rows(&TechniqueSelection::All) {
         let key = setting.key;
         if let Some(value) = matches.get_one::<String>(key)
             && (reads(technique, key) || !others.iter().any(|other| reads(*other, key)))
         {
             job.set(key, value)?;
+            typed.push(key);
         }
     }
+    let unread = presets.drop_unread(technique, &mut job.values, |key| typed.contains(&key));
+    unread.iter().for_each(|sentence| say(format!("note: passed over of a preset: {sentence}")));
+    job.presets = presets.paths().map(|path| path.display().to_string()).collect();
     job.device = matches.get_one::<String>("device").cloned();
     job.validate = matches.get_flag("validate");
     job.command = argv.to_vec();

@@ -23,6 +23,7 @@ pub mod scene;
 mod self_test;
 pub mod settings;
 mod spectrum;
+pub mod tune;
 
 use crate::error::Result;
 use clap::Command;
@@ -45,6 +46,7 @@ fn command(listed: &TechniqueSelection) -> Command {
             compare::command(),
             bench::command(listed),
             reproduce::command(),
+            tune::command(listed),
             memory::command(listed),
             scene::command(),
             sampling::command(),
@@ -67,6 +69,7 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("compare", matches)) => compare::run(matches),
         Some(("bench", matches)) => bench::run(matches, argv),
         Some(("reproduce", matches)) => reproduce::run(matches),
+        Some(("tune", matches)) => tune::run(matches, argv),
         Some(("memory", matches)) => memory::run(matches, argv),
         Some(("scene", matches)) => scene::run(matches),
         Some(("sampling", matches)) => sampling::run(matches),

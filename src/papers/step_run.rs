@@ -93,6 +93,8 @@ fn left(step: &Step, request: &Request, commit: &str) -> Result<Left> {
 fn ended(program: &Path, arguments: &[String]) -> Result<Result<Vec<u8>, Failure>> {
     let cannot = |error: std::io::Error| Error::request(format!("cannot run {}: {error}", program.display()));
     let mut command = Command::new(program);
+    // What a paper publishes is not of what the user likes best.
+    command.env("QUINCUNX_DEFAULTS", "");
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().map_err(cannot)?;
     let (mut stdout, stderr) = (child.stdout.take().expect("piped"), child.stderr.take().expect("piped"));

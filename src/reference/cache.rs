@@ -4,10 +4,10 @@
 //! make the same reference at once; each renames a whole file into place, and the last one stays.
 
 use super::recipe::Recipe;
-use crate::cache_folder;
 use crate::error::{Error, Result};
 use crate::picture::image_file::WriteOptions;
 use crate::picture::{Picture, image_file};
+use crate::user_folder;
 use std::path::{Path, PathBuf};
 
 const KEY: &str = "quincunx.reference_key";
@@ -37,7 +37,7 @@ impl Cache {
     ///
     /// Errors: none of these is set (exit code 2).
     pub fn of_user() -> Result<Self> {
-        let folder = cache_folder::of_user().ok_or_else(|| {
+        let folder = user_folder::cache().ok_or_else(|| {
             Error::request("--reference auto: there is no folder to keep references in, because HOME is not set")
                 .note("set QUINCUNX_CACHE to one")
         })?;

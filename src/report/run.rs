@@ -48,6 +48,9 @@ pub struct RunReport {
     pub quincunx: Program,
     /// The command that repeats the run, a word an entry; empty where none was typed.
     pub command: Vec<String>,
+    /// Files of presets that settings were read from, the user's defaults among them; not there where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub presets: Vec<String>,
     pub device: DeviceRow,
     /// The technique's name.
     pub technique: String,

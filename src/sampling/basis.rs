@@ -9,8 +9,8 @@ use super::kept::{self, Asked};
 use super::pattern::{Dimension, MOST_FURTHER, Pattern, Sample};
 use super::sampler::{Places, Points, Sampler};
 use super::side::Side;
-use crate::cache_folder;
 use crate::error::Result;
+use crate::user_folder;
 
 /// The samples of one basis. Member `i` is sample `i` and its copies in all bases: a regular grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl Basis {
         let area_px = sides[0].length_px() * sides[1].length_px();
         let count = (samples_per_px * area_px).round().max(1.0) as u32;
         let asked = Asked { sampler, sides, count, dimensions: 2 + further.len(), seed, places };
-        let points = kept::points(&asked, cache_folder::of_user().map(|folder| folder.join("patterns")).as_deref())?;
+        let points = kept::points(&asked, user_folder::cache().map(|folder| folder.join("patterns")).as_deref())?;
         Ok(Self { sides, further: further.to_vec(), points })
     }
 

@@ -103,6 +103,9 @@ pub struct Rival {
     pub bytes: u64,
 }
 
+/// Settings by key, each with several values.
+pub type Tuned = &'static [(&'static str, &'static [&'static str])];
+
 /// A pattern of samples that settings of a technique choose.
 pub struct NamedPattern {
     /// Its name on the command line, different from every other pattern's.
@@ -178,6 +181,11 @@ pub trait Technique: Sync {
     /// What a report says of its figures, a line an entry.
     fn notes(&self, _: &Figures<'_>) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Settings that `tune` searches where none are named, each with the values that it tries.
+    fn tuned(&self) -> Tuned {
+        &[]
     }
 
     /// Patterns of samples that its settings choose.

@@ -9,14 +9,17 @@ use std::time::{Duration, Instant};
 /// How a program is started: as it is, or through what QUINCUNX_RUNNER names, with its path as the first argument. The runner must
 /// become that program, whose process is interrupted and measured.
 pub fn start(program: impl AsRef<OsStr>) -> std::process::Command {
-    match std::env::var_os("QUINCUNX_RUNNER") {
+    let mut command = match std::env::var_os("QUINCUNX_RUNNER") {
         Some(runner) => {
             let mut command = std::process::Command::new(runner);
             command.arg(program);
             command
         }
         None => std::process::Command::new(program),
-    }
+    };
+    // The defaults of whoever runs the tests are none of theirs.
+    command.env("QUINCUNX_DEFAULTS", "");
+    command
 }
 
 /// The program of this package.

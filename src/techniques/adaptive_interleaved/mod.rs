@@ -67,7 +67,7 @@ mod steps;
 
 use super::bench_stage::BenchStage;
 use super::notes::Figures;
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, Tuned};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::{Access, Buffer, Commands, Gpu, Image};
@@ -169,6 +169,16 @@ impl Technique for AdaptiveInterleaved {
             more => settings.extend([("transport", "full".to_owned()), ("bounces", (more + 1).to_string())]),
         }
         Ok(settings)
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("refine", &["indirect", "fused"]),
+            ("ray-order", &["slot", "tile"]),
+            ("geometry", &["culled", "all"]),
+            ("texels", &["auto", "1", "4", "16"]),
+            ("workgroup", &["auto", "8x8", "16x16", "64x1", "256x1"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

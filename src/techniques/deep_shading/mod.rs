@@ -108,7 +108,7 @@ mod tuples;
 mod visibility;
 
 use super::bench_stage::BenchStage;
-use super::{Figures, HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, notes, straight_light};
+use super::{Figures, HostPart, Inputs, NamedPattern, Prepared, Rival, Technique, Tuned, notes, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::lights::LightSet;
@@ -229,6 +229,19 @@ impl Technique for DeepShading {
 
     fn notes(&self, figures: &Figures<'_>) -> Vec<String> {
         Vec::from_iter(notes::direct_light(figures, None))
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("lists", &["linked", "direct", "none"]),
+            ("shade-by", &["compute", "fragment"]),
+            ("cull-lights", &["on", "off"]),
+            ("duplicates", &["avoided", "tolerated"]),
+            ("compaction", &["on", "off"]),
+            ("zmax", &["off", "on"]),
+            ("shaded-triangles", &["listed", "all"]),
+            ("texels", &["auto", "1", "4", "16"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

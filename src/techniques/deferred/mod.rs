@@ -8,7 +8,7 @@ pub mod shade;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, Prepared, Technique, straight_light};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, Tuned, straight_light};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::gpu::shader::structs::LightBlock;
@@ -70,6 +70,17 @@ impl Technique for Deferred {
 
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         straight_light(values, lights, 0)
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("cull", &["none", "tiled"]),
+            ("cull-by", &["auto", "invocation", "workgroup"]),
+            ("geometry", &["culled", "all"]),
+            ("light-lists", &["object", "none"]),
+            ("texels", &["auto", "1", "4", "16"]),
+            ("workgroup", &["auto", "8x8", "16x16", "64x1", "256x1"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -28,7 +28,7 @@ mod settings;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, Prepared, Technique, straight_light};
+use super::{Frame, HostPart, Inputs, Prepared, Technique, Tuned, straight_light};
 use crate::caps::{Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
@@ -89,6 +89,15 @@ impl Technique for Forward {
 
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         straight_light(values, lights, 0)
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("depth-prepass", &["on", "off"]),
+            ("geometry", &["culled", "all"]),
+            ("light-lists", &["object", "none"]),
+            ("light-buffer", &["uniform", "storage"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -36,7 +36,7 @@ mod survivors;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, straight_light};
+use super::{HostPart, Inputs, NamedPattern, Prepared, Technique, Tuned, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::gpu::Access;
@@ -139,6 +139,17 @@ impl Technique for InferredLighting {
     fn reference_settings(&self, values: &Values, lights: &LightSet) -> Result<Vec<(&'static str, String)>> {
         let by_volumes = values.integer("shadow-volumes") as usize;
         straight_light(values, lights, by_volumes)
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("volumes", &["tiled", "quad", "scissor", "stencil", "both"]),
+            ("cull-by", &["auto", "invocation", "workgroup"]),
+            ("depth-prepass", &["on", "off"]),
+            ("geometry", &["culled", "all"]),
+            ("texels", &["auto", "1", "4", "16"]),
+            ("workgroup", &["auto", "8x8", "16x16", "64x1", "256x1"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -61,7 +61,7 @@ pub mod vpl_shadow;
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::{self, Figures};
 use super::parts::{InParts, Part, Runs};
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, light_visibility};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, Tuned, light_visibility};
 use crate::caps::{Caps, Need};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::LightBlock;
@@ -171,6 +171,20 @@ impl Technique for InterleavedDeferred {
     /// 2: light walks leave mirrored emissive surfaces from their front.
     fn estimator_version(&self) -> u32 {
         2
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("split", &["none", "branch", "indirect", "remap", "one-pass", "two-pass", "tile"]),
+            ("pattern", &["2x2", "4x4", "8x8"]),
+            ("filter", &["gauss", "gauss-fast"]),
+            ("fuse", &["off", "on"]),
+            ("storage", &["auto", "buffer", "image"]),
+            ("copy", &["pull", "push"]),
+            ("block", &["8", "16", "32", "64"]),
+            ("texels", &["auto", "1", "4", "16"]),
+            ("workgroup", &["auto", "8x8", "16x16", "64x1", "256x1"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

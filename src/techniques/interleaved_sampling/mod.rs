@@ -42,7 +42,7 @@ mod table;
 
 use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
-use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, emissive_lights, straight_light};
+use super::{Frame, HostPart, Inputs, NamedPattern, Prepared, Run, Technique, Tuned, emissive_lights, straight_light};
 use crate::caps::{Ability, Caps, Need};
 use crate::error::Result;
 use crate::frame::View;
@@ -121,6 +121,15 @@ impl Technique for InterleavedSampling {
             settings.push(("pixel", "middle".to_owned()));
         }
         Ok(settings)
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("depth-prepass", &["on", "off"]),
+            ("geometry", &["culled", "all"]),
+            ("light-lists", &["object", "none"]),
+            ("light-buffer", &["uniform", "storage"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

@@ -51,7 +51,7 @@ use super::bench_stage::BenchStage;
 use super::notes::{self, Figures};
 use super::shutter_close::ShutterClose;
 use super::until_error::{sample_count, until_error};
-use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, emissive_lights};
+use super::{Frame, HostPart, Inputs, Prepared, Sums, Technique, Tuned, emissive_lights};
 use crate::bvh::Bvh;
 use crate::bvh::nodes::{Nodes, Walk};
 use crate::caps::{Ability, Caps, Need};
@@ -112,6 +112,16 @@ impl Technique for PathTraced {
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
         Vec::new()
+    }
+
+    fn tuned(&self) -> Tuned {
+        &[
+            ("node-width", &["4", "2"]),
+            ("node-layout", &["depth-first", "breadth-first", "van-emde-boas"]),
+            ("stack", &["auto", "private", "shared", "short"]),
+            ("stack-entries", &["4", "8", "16"]),
+            ("workgroup", &["auto", "8x8", "16x16", "64x1", "256x1"]),
+        ]
     }
 
     fn bench_stages(&self) -> &'static [BenchStage] {

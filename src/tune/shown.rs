@@ -1,0 +1,59 @@
+//! What a search has seen: pictures and how near they are, and how many candidates there were.
+
+use crate::metrics::Metrics;
+use serde::Serialize;
+
+/// A picture's errors, and whether they are within the bounds.
+#[derive(Clone, Copy, Debug)]
+pub struct Judged {
+    /// None where there are no bounds.
+    pub errors: Option<Metrics>,
+    pub is_near: bool,
+}
+
+impl Judged {
+    pub fn of(self, settings: &str) -> Shown {
+        Shown { settings: settings.to_owned(), errors: self.errors, is_near: self.is_near }
+    }
+}
+
+/// A picture that some of the candidates make.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shown {
+    /// Those that make it, of the axes.
+    pub settings: String,
+    /// None where it was not made, or there are no bounds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Metrics>,
+    #[serde(rename = "near")]
+    pub is_near: bool,
+}
+
+impl Shown {
+    pub fn unseen(settings: &str) -> Self {
+        Self { settings: settings.to_owned(), errors: None, is_near: false }
+    }
+}
+
+/// How many there were.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Counts {
+    /// Of the axes' values.
+    pub combinations: usize,
+    /// Those of them that can be and that differ in what is read.
+    pub candidates: usize,
+    /// Pictures that they make.
+    pub pictures: usize,
+    /// Those that are near enough.
+    pub near_pictures: usize,
+    /// Candidates that make these.
+    pub near_candidates: usize,
+    /// Those of them that were measured.
+    pub measured: usize,
+    /// Candidates that the device or its memory refused.
+    pub refused: usize,
+    /// Frames before the last measurement.
+    pub search_frames: usize,
+    /// Frames of a sweep over `near_candidates` with as many rounds as the last measurement has.
+    pub sweep_frames: usize,
+}

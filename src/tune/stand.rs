@@ -1,0 +1,70 @@
+//! The stand on which candidates are measured: groups beside the baseline, A B A B, without the rows of `bench`.
+
+use super::halving::Trial;
+use crate::bench::candidate::Candidate;
+use crate::bench::group::{BASELINE, Group, MOST_VARIANTS, Measurement};
+use crate::bench::rounds::Length;
+use crate::bench::variant::Variant;
+use crate::error::{Error, Result};
+use crate::picture::Picture;
+use crate::progress::Stage;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::time::Instant;
+
+/// What is done with the picture of a candidate.
+pub type Look<'a> = &'a mut dyn FnMut(usize, &Picture) -> Result<()>;
+
+pub struct Stand<'a> {
+    /// Of the request.
+    pub measurement: Measurement<'a>,
+    pub candidates: &'a [Candidate],
+    pub baseline: Rc<Variant>,
+    /// No group begins after it.
+    pub deadline: Instant,
+    /// Frames that were measured, those of the baseline and those that warm up among them.
+    pub frames: usize,
+    /// Candidates that the device or its memory refused.
+    pub refused: Vec<(usize, Error)>,
+}
+
+impl Stand<'_> {
+    pub fn is_late(&self) -> bool {
+        Instant::now() >= self.deadline
+    }
+
+    /// As `Trial::ratios`; `look` sees the picture of each.
+    ///
+    /// Errors: as `Trial::ratios`, and those of `look`.
+    pub fn measure(&mut self, candidates: &[usize], rounds: usize, look: Look<'_>) -> Result<Vec<(usize, Vec<f64>)>> {
+        let mut waiting: VecDeque<usize> = candidates.iter().copied().collect();
+        let mut found = Vec::new();
+        let stage = Stage::counted("measuring", "candidates");
+        while !waiting.is_empty() && !self.is_late() {
+            let mut group = Group::new(&self.baseline, MOST_VARIANTS);
+            self.refused.extend(group.fill(&self.measurement, self.candidates, &mut waiting)?);
+            if group.members.is_empty() {
+                continue;
+            }
+            let pictures = group.pictures()?;
+            for (member, picture) in group.members.iter().zip(&pictures) {
+                look(member.candidate, picture)?;
+            }
+            let samples = group.measure(Length { least: rounds, until_interval: None }, &mut |_, _| {})?;
+            self.frames += pictures.len() + samples.len() * (rounds + 1);
+            let baseline = samples[BASELINE].totals_ms();
+            for member in &group.members {
+                let times = samples[member.probe].totals_ms();
+                found.push((member.candidate, times.iter().zip(&baseline).map(|(time, base)| time / base).collect()));
+            }
+            stage.reach((candidates.len() - waiting.len()) as u64, candidates.len() as u64);
+        }
+        Ok(found)
+    }
+}
+
+impl Trial for Stand<'_> {
+    fn ratios(&mut self, candidates: &[usize], rounds: usize) -> Result<Vec<(usize, Vec<f64>)>> {
+        self.measure(candidates, rounds, &mut |_, _| Ok(()))
+    }
+}
