@@ -63,6 +63,7 @@ pub mod interrupt;
 pub mod job;
 pub mod lens;
 pub mod lights;
+pub mod locality;
 pub mod memory;
 pub mod metrics;
 pub mod page;

@@ -20,6 +20,7 @@ mod cli;
 mod framing;
 mod gpu;
 mod lens;
+mod locality;
 mod memory;
 mod papers;
 mod passes;

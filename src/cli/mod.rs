@@ -10,6 +10,7 @@ mod frames_args;
 mod gate_args;
 mod job_args;
 mod listed;
+mod locality;
 pub mod man;
 pub mod memory;
 mod output;

@@ -38,7 +38,7 @@ impl Shown {
 /// How many there were.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Counts {
-    /// Of the axes' values.
+    /// Values of the axes, all with all.
     pub combinations: usize,
     /// Those of them that can be and that differ in what is read.
     pub candidates: usize,

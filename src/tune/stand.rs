@@ -16,7 +16,7 @@ use std::time::Instant;
 pub type Look<'a> = &'a mut dyn FnMut(usize, &Picture) -> Result<()>;
 
 pub struct Stand<'a> {
-    /// Of the request.
+    /// The request's.
     pub measurement: Measurement<'a>,
     pub candidates: &'a [Candidate],
     pub baseline: Rc<Variant>,

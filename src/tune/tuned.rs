@@ -50,7 +50,7 @@ pub struct Tuned {
     counts: Counts,
     shown: Vec<Shown>,
     rungs: Vec<Rung>,
-    /// Of the last measurement, the request's own settings first.
+    /// Those of the last measurement, the request's own settings first.
     rows: Vec<BenchRow>,
     chosen: Point,
     /// How often a neighbour took the place of the fastest.

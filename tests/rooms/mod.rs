@@ -19,7 +19,7 @@ const FLOORS: &[&[&str]] = &[
     &["passes"],
     &["techniques"],
     &["report"],
-    &["preset", "session"],
+    &["locality", "preset", "session"],
     &["reference"],
     &["continuation"],
     &["job"],

@@ -5,7 +5,7 @@ mod collapse;
 mod deep_shading;
 mod forward;
 mod inferred_lighting;
-mod interleaved_deferred;
+pub mod interleaved_deferred;
 mod interleaved_sampling;
 pub mod own_pass;
 mod path_traced;

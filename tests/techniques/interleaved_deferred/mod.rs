@@ -4,7 +4,7 @@
 mod accumulate;
 mod discontinuity;
 mod shade_by;
-mod split;
+pub mod split;
 mod subsample;
 mod vpl_brdf;
 mod vpl_maps;
