@@ -6,6 +6,7 @@ use quincunx::gpu::structure::Over;
 use quincunx::gpu::{DeviceRequest, Gpu};
 use quincunx::job::Job;
 use quincunx::plan::Requirements;
+use quincunx::units::Bytes;
 use quincunx::{study, techniques};
 use serde_json::Value;
 
@@ -158,6 +159,33 @@ fn structures_of_a_driver_that_nobody_measured_are_not_planned() {
     };
     require_refusal(|caps| caps.layout.as_mut().unwrap().structures = None, 2, "only the driver says");
     require_refusal(|caps| caps.features.ray_query = false, 3, "VK_KHR_ray_query");
+}
+
+/// The table of docs/memory.md, made again.
+#[test]
+fn the_page_says_what_the_heaps_of_three_gpus_hold() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/memory.md")).unwrap();
+    let heaps = [("nvidia-rtx-2070", 0), ("nvidia-rtx-2070", 2), ("amd-navi21", 1), ("intel-arc-a770", 0)];
+    let head: Vec<String> = heaps
+        .iter()
+        .map(|(name, heap)| format!("heap {heap} of {}", Bytes(known::caps(name).unwrap().heaps[*heap].bytes)))
+        .collect();
+    let is_head = |line: &&str| line.starts_with("| technique | peak |");
+    let found = page.lines().find(is_head).unwrap();
+    assert!(head.iter().all(|words| found.contains(words)), "{found} has not {head:?}");
+    for technique in techniques::ALL {
+        let mut job = Job::new("cornell", *technique);
+        job.set("size", "1920x1080").unwrap();
+        let study = |name: &str| study::planned(&job, name, &known::caps(name).unwrap()).unwrap();
+        let bound = |(name, heap): &(&str, usize)| {
+            let heaps = study::heaps::json(&study(name));
+            Bytes(heaps[*heap]["bound_bytes"].as_u64().unwrap()).to_string()
+        };
+        let peak = study(heaps[0].0).table.json()["peak_bytes"].as_u64().unwrap();
+        let cells: Vec<String> = heaps.iter().map(bound).collect();
+        let row = format!("| `{}` | {} | {} |", technique.name(), Bytes(peak), cells.join(" | "));
+        assert!(page.contains(&row), "docs/memory.md has not\n{row}");
+    }
 }
 
 #[test]

@@ -85,9 +85,12 @@ fn settle(
             return Err(Error::interrupted("interrupted; nothing is chosen"));
         }
         let faster = tuned::faster(&measured.rows, request.bounds);
-        let next =
-            faster.and_then(|row| places.iter().copied().find(|place| label(&space.points[*place]) == row.variant));
-        match next.filter(|_| moves < MOST_MOVES && Instant::now() < deadline) {
+        let asked = label(&Point::new());
+        let next = faster.and_then(|row| match row.variant == asked {
+            true => space.asked,
+            false => places.iter().copied().find(|place| label(&space.points[*place]) == row.variant),
+        });
+        match next.filter(|next| *next != chosen && moves < MOST_MOVES && Instant::now() < deadline) {
             Some(next) => chosen = next,
             None => return Ok((measured.rows, chosen, moves)),
         }

@@ -26,11 +26,12 @@ const LEAST_DRAWN: usize = 24;
 const SHARE_OF_SWEEP: f64 = 0.1;
 /// Frames that a drawn candidate costs, all rungs together: 2 in the first, half of the one before in each.
 const FRAMES_A_DRAWN: f64 = 4.0;
-/// Part of the time after which no candidate is measured for the first time: pictures, then times.
-const PICTURES_UNTIL: f64 = 0.35;
-const SEARCH_UNTIL: f64 = 0.7;
-/// Members of a class that are tried until one can be measured.
-const MOST_TRIED: usize = 3;
+/// Parts of the time after which nothing more is measured: pictures, candidates for the first time, candidates again.
+const PICTURES_UNTIL: f64 = 0.3;
+const FIRST_UNTIL: f64 = 0.55;
+const AGAIN_UNTIL: f64 = 0.75;
+/// Members of a class that are tried until one can be measured: many a combination is refused when it is made.
+const MOST_TRIED: usize = 8;
 
 /// What the search left, before its result is measured as rows.
 pub struct Found {
@@ -76,7 +77,8 @@ pub fn search(request: &Request<'_>, begun: Instant) -> Result<Found> {
         measurement,
         candidates: &space.candidates,
         baseline,
-        deadline: begun + request.time.mul_f64(PICTURES_UNTIL),
+        first_until: begun + request.time.mul_f64(PICTURES_UNTIL),
+        again_until: begun + request.time.mul_f64(AGAIN_UNTIL),
         frames: 0,
         refused: Vec::new(),
     };
@@ -90,9 +92,15 @@ pub fn search(request: &Request<'_>, begun: Instant) -> Result<Found> {
     say(format!("{} of {} pictures are near enough", near.len(), shown.len()));
     let possible: usize = near.iter().map(|class| space.classes[*class].members.len()).sum();
     let neighbours: usize = request.axes.iter().map(|axis| axis.values.len() - 1).sum();
-    let drawn = space.drawn(&near, drawn_count(possible, neighbours, request.repeat));
-    stand.deadline = begun + request.time.mul_f64(SEARCH_UNTIL);
-    known.retain(|place, _| near.iter().any(|class| space.classes[*class].members.contains(place)));
+    let mut drawn = space.drawn(&near, drawn_count(possible, neighbours, request.repeat));
+    stand.first_until = begun + request.time.mul_f64(FIRST_UNTIL);
+    let is_near = |place: &usize| near.iter().any(|class| space.classes[*class].members.contains(place));
+    // What was asked for stands against the others, first.
+    if let Some(asked) = space.asked.filter(is_near) {
+        drawn.retain(|place| *place != asked);
+        drawn.insert(0, asked);
+    }
+    known.retain(|place, _| is_near(place));
     let (finalists, rungs) = halve(&drawn, FINALISTS, &mut known, &mut stand)?;
     if finalists.is_empty() {
         return Err(Error::request("no candidate could be measured in the time").note("--search-time has more"));

@@ -30,6 +30,8 @@ pub struct Space {
     pub classes: Vec<Class>,
     /// Combinations of the axes, equal ones and those that cannot be among them.
     pub combinations: usize,
+    /// Place of the request's own settings, where the axes have them.
+    pub asked: Option<usize>,
     /// Place of a candidate by its settings.
     places: HashMap<String, usize>,
 }
@@ -49,6 +51,7 @@ impl Space {
             points: Vec::new(),
             classes: Vec::new(),
             combinations,
+            asked: None,
             places: HashMap::new(),
         };
         let mut why = None;
@@ -80,6 +83,7 @@ impl Space {
                 Error::request(format!("none of the {combinations} combinations is possible")).note(error.message())
             );
         }
+        space.asked = at(job, &Point::new()).ok().and_then(|values| space.places.get(&key(&values)).copied());
         space.classes = classes(job, &space.points, &space.candidates);
         let mut pcg = Pcg32::new(job.values.integer("seed"), 0);
         space.classes.iter_mut().for_each(|class| shuffle(&mut class.members, &mut pcg));
@@ -174,6 +178,7 @@ mod tests {
     #[test]
     fn combinations_that_come_to_the_same_are_one_candidate() {
         let (_, _, space) = space(&["split=none,one-pass,two-pass", "block=8,16,32", "pattern=2x2,4x4"]);
+        assert_eq!(space.asked.map(|place| label(&space.points[place])).unwrap(), "split=one-pass pattern=4x4");
         // Without a split no pattern and no block is read; with one pass no block.
         assert_eq!((space.combinations, space.candidates.len()), (18, 1 + 2 + 6));
         let all: Vec<usize> = (0..space.candidates.len()).collect();

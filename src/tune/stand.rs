@@ -20,8 +20,10 @@ pub struct Stand<'a> {
     pub measurement: Measurement<'a>,
     pub candidates: &'a [Candidate],
     pub baseline: Rc<Variant>,
-    /// No group begins after it.
-    pub deadline: Instant,
+    /// No group of candidates that are measured for the first time begins after it.
+    pub first_until: Instant,
+    /// No group at all does.
+    pub again_until: Instant,
     /// Frames that were measured, those of the baseline and those that warm up among them.
     pub frames: usize,
     /// Candidates that the device or its memory refused.
@@ -29,10 +31,6 @@ pub struct Stand<'a> {
 }
 
 impl Stand<'_> {
-    pub fn is_late(&self) -> bool {
-        Instant::now() >= self.deadline
-    }
-
     /// As `Trial::ratios`; `look` sees the picture of each.
     ///
     /// Errors: as `Trial::ratios`, and those of `look`.
@@ -40,7 +38,8 @@ impl Stand<'_> {
         let mut waiting: VecDeque<usize> = candidates.iter().copied().collect();
         let mut found = Vec::new();
         let stage = Stage::counted("measuring", "candidates");
-        while !waiting.is_empty() && !self.is_late() {
+        let until = if rounds == 1 { self.first_until } else { self.again_until };
+        while !waiting.is_empty() && Instant::now() < until {
             let mut group = Group::new(&self.baseline, MOST_VARIANTS);
             self.refused.extend(group.fill(&self.measurement, self.candidates, &mut waiting)?);
             if group.members.is_empty() {

@@ -63,11 +63,16 @@ fn row_is_near(row: &BenchRow, bounds: &[Gate]) -> bool {
     bounds.is_empty() || row.best_known_errors().is_some_and(|errors| is_near(bounds, errors))
 }
 
-/// The fastest of the rows that are near enough and whose whole interval is faster than the baseline.
+/// A row takes the place of the fastest where its mean is below this, if the interval does not tell.
+const NOTICEABLE: f64 = 0.97;
+
+/// The fastest of the rows that are near enough, where it is faster than the baseline by its whole interval, or by some percent on
+/// average.
 pub(super) fn faster<'a>(rows: &'a [BenchRow], bounds: &[Gate]) -> Option<&'a BenchRow> {
-    let told = rows.iter().filter(|row| row.interval().is_some_and(|[_, high]| high < 1.0) && row_is_near(row, bounds));
-    let mean = |row: &&BenchRow| row.ratio.as_ref().map_or(f64::INFINITY, |ratio| ratio.mean);
-    told.min_by(|a, b| mean(a).total_cmp(&mean(b)))
+    let mean = |row: &BenchRow| row.ratio.as_ref().map_or(f64::INFINITY, |ratio| ratio.mean);
+    let is_told = |row: &BenchRow| row.interval().is_some_and(|[_, high]| high < 1.0);
+    let faster = rows.iter().filter(|row| (mean(row) < NOTICEABLE || is_told(row)) && row_is_near(row, bounds));
+    faster.min_by(|a, b| mean(a).total_cmp(&mean(b)))
 }
 
 impl Tuned {
