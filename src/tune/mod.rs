@@ -84,8 +84,10 @@ fn settle(
         if measured.interrupted {
             return Err(Error::interrupted("interrupted; nothing is chosen"));
         }
-        let faster = tuned::faster(&measured.rows, request.bounds);
         let asked = label(&Point::new());
+        // The request's own settings may not be among those that are searched.
+        let candidates = measured.rows.iter().filter(|row| row.variant != asked || space.asked.is_some());
+        let faster = tuned::faster(candidates, request.bounds);
         let next = faster.and_then(|row| match row.variant == asked {
             true => space.asked,
             false => places.iter().copied().find(|place| label(&space.points[*place]) == row.variant),

@@ -68,10 +68,10 @@ const NOTICEABLE: f64 = 0.97;
 
 /// The fastest of the rows that are near enough, where it is faster than the baseline by its whole interval, or by some percent on
 /// average.
-pub(super) fn faster<'a>(rows: &'a [BenchRow], bounds: &[Gate]) -> Option<&'a BenchRow> {
+pub(super) fn faster<'a>(rows: impl Iterator<Item = &'a BenchRow>, bounds: &[Gate]) -> Option<&'a BenchRow> {
     let mean = |row: &BenchRow| row.ratio.as_ref().map_or(f64::INFINITY, |ratio| ratio.mean);
     let is_told = |row: &BenchRow| row.interval().is_some_and(|[_, high]| high < 1.0);
-    let faster = rows.iter().filter(|row| (mean(row) < NOTICEABLE || is_told(row)) && row_is_near(row, bounds));
+    let faster = rows.filter(|row| (mean(row) < NOTICEABLE || is_told(row)) && row_is_near(row, bounds));
     faster.min_by(|a, b| mean(a).total_cmp(&mean(b)))
 }
 

@@ -44,7 +44,7 @@ pub fn plot(measure: &str, rows: &[BenchRow]) -> Option<Markup> {
                 text.tick x=((LEFT + WIDTH - RIGHT) / 2.0) y=(HEIGHT - 8.0) { "time, in parts of the baseline's" }
                 @for point in &points {
                     @let at = y.place(point.error);
-                    line.bounds x1=(x.place(point.interval[0])) x2=(x.place(point.interval[1])) y1=(at) y2=(at) {}
+                    line.bounds.faint x1=(x.place(point.interval[0])) x2=(x.place(point.interval[1])) y1=(at) y2=(at) {}
                     circle class=(if point.is_best { "ours" } else { "other" }) cx=(x.place(point.time)) cy=(at) r="4.5" {
                         title { (point.name) ": " (short(point.time)) ", " (measure.name) " " (short(point.error)) }
                     }
