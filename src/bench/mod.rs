@@ -8,6 +8,7 @@ pub mod best;
 pub mod candidate;
 pub mod copy;
 mod csv_file;
+pub mod device;
 pub mod fail_if;
 pub mod faster;
 pub mod frames;

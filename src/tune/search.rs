@@ -155,6 +155,7 @@ fn none_is_near(shown: &[Shown], refused: Option<&(usize, Error)>, judge: &Judge
         None => {
             let why = refused.map_or("there was no time", |(_, error)| error.message());
             Error::request(format!("none of the {} pictures could be made: {why}", shown.len()))
+                .note("--search-time has more of it")
         }
     }
 }

@@ -1,0 +1,120 @@
+//! `bench device`: each work does what it says, and passes are held against it.
+
+use crate::support::program::Program;
+use crate::support::watched::{require_silence, watched_device};
+use quincunx::bench::device::work::{Buffers, Work, Worked};
+use quincunx::bench::rounds::Probe;
+use quincunx::gpu::Gpu;
+use quincunx::gpu::shader::bench::device::DEVICE_SOUGHT;
+use serde_json::Value;
+use std::rc::Rc;
+
+const BYTES: u64 = 1 << 20;
+
+/// What the target holds after a run over a source of this word.
+fn target(gpu: &std::sync::Arc<Gpu>, work: Work, fill: u32) -> Vec<u32> {
+    let buffers = Rc::new(Buffers::new(gpu, BYTES).unwrap());
+    let worked = Worked::new(gpu, work, &buffers, fill).unwrap();
+    assert_eq!(worked.measure().unwrap().len(), 1);
+    worked.target(gpu).unwrap()
+}
+
+#[test]
+fn each_work_touches_what_it_says() {
+    let gpu = Gpu::open(&watched_device()).unwrap();
+    let words = (BYTES / 4) as usize;
+    assert_eq!(target(&gpu, Work::Clear, 7), vec![7; words]);
+    assert_eq!(target(&gpu, Work::CopyCommand, 8), vec![8; words]);
+    assert_eq!(target(&gpu, Work::Copy, 9), vec![9; words]);
+    let written = target(&gpu, Work::Write, 0);
+    assert!(written.chunks(4).enumerate().all(|(index, element)| element == [index as u32, 1, 2, 3]));
+    // What reads finds the word that is everywhere, and none that is nowhere.
+    for work in [Work::Read, Work::Stride(1), Work::Stride(64), Work::Random] {
+        assert_eq!([target(&gpu, work, DEVICE_SOUGHT)[0], target(&gpu, work, 7)[0]], [1, 0], "{work:?}");
+    }
+    for counters in [1, 64] {
+        let counted = target(&gpu, Work::Atomic(counters), 0);
+        let each = (words / counters as usize) as u32;
+        assert!(counted[..counters as usize].iter().all(|count| *count == each), "{counters}: {:?}", &counted[..4]);
+        assert!(counted[counters as usize..].iter().all(|count| *count == 0));
+    }
+    require_silence(&gpu, "bench device");
+}
+
+#[test]
+fn passes_are_a_share_of_what_the_device_can_do() {
+    let program = Program::new();
+    let render = [
+        "render",
+        "cornell",
+        "--size",
+        "320x180",
+        "--vpls",
+        "16",
+        "--profile",
+        "--report",
+        "report.json",
+        "-o",
+        "out.png",
+        "--quiet",
+    ];
+    program.run(&render).fine();
+    let words = [
+        "bench",
+        "device",
+        "--bytes",
+        "4MiB",
+        "--repeat",
+        "2",
+        "--explain",
+        "report.json",
+        "--json",
+        "--quiet",
+        "--validate",
+    ];
+    let lines: Vec<Value> =
+        program.run(&words).fine().out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let (rows, of_reports) = lines.split_at(lines.len() - 1);
+    let works: Vec<&str> = rows.iter().map(|row| row["work"].as_str().unwrap()).collect();
+    assert_eq!(works.len(), 11, "{works:?}");
+    for row in rows {
+        let number = |key: &str| row[key].as_f64().unwrap();
+        let median = row["ms"]["median"].as_f64().unwrap();
+        let moved = number("bytes_read") + number("bytes_written");
+        assert!((number("gb_per_s") - moved / median / 1e6).abs() < 1e-6 * number("gb_per_s"), "{row}");
+        assert_eq!(row["ms"]["samples"].as_array().unwrap().len(), 2);
+    }
+    let rate = |work: &str| rows.iter().find(|row| row["work"] == work).unwrap()["gb_per_s"].as_f64().unwrap();
+    let report: Value = serde_json::from_str(&std::fs::read_to_string(program.path("report.json")).unwrap()).unwrap();
+    let passes = of_reports[0]["passes"].as_array().unwrap();
+    assert!(passes.len() > 4, "{passes:?}");
+    for pass in passes {
+        let timed = report["passes"].as_array().unwrap().iter().find(|one| one["name"] == pass["pass"]).unwrap();
+        let least = pass["least_ms"].as_f64().unwrap();
+        // At least what it reads at the rate of reading.
+        assert!(least >= 0.999 * timed["bytes_read"].as_f64().unwrap() / rate("read") / 1e6, "{pass}");
+        let share = least / timed["ms"]["median"].as_f64().unwrap();
+        assert!((pass["share"].as_f64().unwrap() - share).abs() < 1e-6 * share.max(1.0), "{pass}");
+        assert_eq!(pass["impossible"], share > 1.1, "{pass}");
+    }
+    // What would be faster than memory is called impossible.
+    let mut fast = report.clone();
+    for pass in fast["passes"].as_array_mut().unwrap() {
+        for key in ["median", "min", "max"] {
+            pass["ms"][key] = 1e-6.into();
+        }
+    }
+    std::fs::write(program.path("fast.json"), fast.to_string()).unwrap();
+    let ran = program.run(&["bench", "device", "--bytes", "1MiB", "--repeat", "1", "--explain", "fast.json"]);
+    assert!(ran.code == 0 && ran.out.contains("impossible: not all of these bytes came from memory"), "{}", ran.out);
+    std::fs::write(program.path("other.json"), report.to_string().replace("llvmpipe", "another")).unwrap();
+    for (words, said) in [
+        (&["--bytes", "3MiB"][..], "a power of two"),
+        (&["--bytes", "1GiB"], "512 MiB"),
+        (&["--explain", "nowhere.json"], "nowhere.json"),
+        (&["--explain", "out.png"], "out.png"),
+    ] {
+        let ran = program.run(&[&["bench", "device"][..], words].concat());
+        assert!(ran.code == 2 && ran.err.contains(said), "{words:?}: {}", ran.err);
+    }
+}
