@@ -7,7 +7,7 @@
 use super::bench_stage::{BenchStage, PlainForm};
 use super::notes::Figures;
 use super::parts::{InParts, Part};
-use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Run, Sums, Technique};
+use super::{Frame, HostPart, Inputs, NamedPattern, Need, Prepared, Rival, Run, Sums, Technique, Tuned};
 use crate::caps::Caps;
 use crate::error::Result;
 use crate::frame::View;
@@ -107,6 +107,10 @@ impl Technique for WithPass {
 
     fn plain(&self) -> Option<&'static PlainForm> {
         self.technique.plain()
+    }
+
+    fn tuned(&self) -> Tuned {
+        self.technique.tuned()
     }
 
     fn patterns(&self) -> &'static [NamedPattern] {
