@@ -34,6 +34,13 @@ impl Pcg32 {
         ((u64::from(self.next_u32()) * u64::from(count)) >> 32) as u32
     }
 
+    /// Brings `items` into a random order (Fisher and Yates).
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last as u32 + 1) as usize);
+        }
+    }
+
     /// 0 to 1 without 1, in steps of 2^-24.
     pub fn unit(&mut self) -> f32 {
         (self.next_u32() >> 8) as f32 / 16_777_216.0

@@ -13,7 +13,6 @@ use std::collections::{BTreeMap, HashMap};
 const MOST_COMBINATIONS: usize = 100_000;
 
 /// Candidates whose settings make one picture, as `Setting::changes` has it.
-#[derive(Debug, PartialEq, Eq)]
 pub struct Class {
     /// The settings that make it, of the axes.
     pub label: String,
@@ -85,8 +84,8 @@ impl Space {
         }
         space.asked = at(job, &Point::new()).ok().and_then(|values| space.places.get(&key(&values)).copied());
         space.classes = classes(job, &space.points, &space.candidates);
-        let mut pcg = Pcg32::new(job.values.integer("seed"), 0);
-        space.classes.iter_mut().for_each(|class| shuffle(&mut class.members, &mut pcg));
+        let mut random = Pcg32::new(job.values.integer("seed"), 0);
+        space.classes.iter_mut().for_each(|class| random.shuffle(&mut class.members));
         Ok(space)
     }
 
@@ -151,12 +150,6 @@ fn classes(job: &Job, points: &[Point], candidates: &[Candidate]) -> Vec<Class> 
         class.members.push(place);
     }
     classes.into_values().collect()
-}
-
-fn shuffle(members: &mut [usize], pcg: &mut Pcg32) {
-    for last in (1..members.len()).rev() {
-        members.swap(last, pcg.below(last as u32 + 1) as usize);
-    }
 }
 
 #[cfg(test)]

@@ -21,12 +21,10 @@ pub fn points(over: &Over, grid: &PixelGrid) -> Points {
     })
 }
 
-/// 0..count in a random order (Fisher and Yates).
+/// 0..count in a random order.
 pub fn shuffled(count: u32, random: &mut Pcg32) -> Vec<u32> {
     let mut order: Vec<u32> = (0..count).collect();
-    for last in (1..order.len()).rev() {
-        order.swap(last, random.below(last as u32 + 1) as usize);
-    }
+    random.shuffle(&mut order);
     order
 }
 
