@@ -3,7 +3,6 @@
 use super::access::Kernel;
 use super::copies::{Copy, Memory, Pass};
 use super::count::{Counts, count};
-use super::frame::Storage;
 use super::machine::Machine;
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
@@ -89,11 +88,7 @@ impl Case {
 
     /// Its memory on a machine.
     pub fn memory(&self, mapping: &MappingParams, machine: &Machine) -> Memory {
-        let storage = match self.storage {
-            StorageKind::Buffer => Storage::Buffer,
-            StorageKind::Image => Storage::Image,
-        };
-        Memory::new(mapping, storage, machine.layout())
+        Memory::new(mapping, self.storage, machine.layout())
     }
 
     /// Each pass with cold caches.

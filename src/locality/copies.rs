@@ -2,10 +2,10 @@
 //! its mapping. Mirrors glsl/techniques/interleaved_deferred/split and gather.
 
 use super::access::{Access, Kernel};
-use super::frame::{Resource, Space, Storage, TEXEL_BYTES, Texels};
+use super::frame::{Resource, Space, TEXEL_BYTES, Texels};
 use super::layout::Layout;
 use crate::gpu::shader::structs::MappingParams;
-use crate::techniques::interleaved_deferred::split_method::Form;
+use crate::techniques::interleaved_deferred::split_method::{Form, StorageKind};
 
 /// Which copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    pub fn new(mapping: &MappingParams, storage: Storage, layout: Layout) -> Self {
+    pub fn new(mapping: &MappingParams, storage: StorageKind, layout: Layout) -> Self {
         let mut space = Space::default();
         let mut image = || space.image(layout, mapping.extent());
         let gbuffer = [image(), image()];
@@ -85,7 +85,7 @@ enum Place {
 impl Copy<'_> {
     /// Texels that a thread moves (RUN of sub_buffers.glsl).
     fn run(&self) -> u32 {
-        if self.memory.sub_buffers.storage == Storage::Buffer { 2 } else { 1 }
+        if self.memory.sub_buffers.storage == StorageKind::Buffer { 2 } else { 1 }
     }
 
     /// Parts of a surface, or the irradiance.

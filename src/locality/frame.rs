@@ -2,6 +2,7 @@
 
 use super::layout::Layout;
 use crate::gpu::shader::structs::MappingParams;
+use crate::techniques::interleaved_deferred::split_method::StorageKind;
 use crate::units::Extent;
 
 /// Bytes of a texel of the position (`--position half` and `unorm16`) and of the normal, and of one of the irradiance.
@@ -55,25 +56,18 @@ impl Space {
     }
 }
 
-/// Where sub-buffers, and the block layout between two passes, lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Storage {
-    Buffer,
-    Image,
-}
-
 /// Texels in the three orders of `MappingParams`, one resource a part: position and normal, or irradiance alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Texels {
-    pub storage: Storage,
+    pub storage: StorageKind,
     pub parts: [Resource; 2],
 }
 
 impl Texels {
-    pub fn new(space: &mut Space, storage: Storage, layout: Layout, mapping: &MappingParams) -> Self {
+    pub fn new(space: &mut Space, storage: StorageKind, layout: Layout, mapping: &MappingParams) -> Self {
         let mut one = || match storage {
-            Storage::Buffer => space.buffer(mapping.texel_count()),
-            Storage::Image => space.image(layout, mapping.padded()),
+            StorageKind::Buffer => space.buffer(mapping.texel_count()),
+            StorageKind::Image => space.image(layout, mapping.padded()),
         };
         Self { storage, parts: [one(), one()] }
     }
@@ -81,16 +75,18 @@ impl Texels {
     /// Address of a texel of a sub-buffer.
     pub fn of_sub_buffer(&self, part: usize, mapping: &MappingParams, texel: [u32; 3]) -> u64 {
         match self.storage {
-            Storage::Buffer => self.parts[part].entry(mapping.linear_of(texel)),
-            Storage::Image => self.parts[part].texel(mapping.tiled_of(texel)),
+            StorageKind::Buffer => self.parts[part].entry(mapping.linear_of(texel)),
+            StorageKind::Image => self.parts[part].texel(mapping.tiled_of(texel)),
         }
     }
 
     /// Address of a texel of the block layout.
     pub fn of_block(&self, part: usize, mapping: &MappingParams, [x, y]: [u32; 2]) -> u64 {
         match self.storage {
-            Storage::Buffer => self.parts[part].entry(u64::from(y) * u64::from(mapping.padded().width) + u64::from(x)),
-            Storage::Image => self.parts[part].texel([x, y]),
+            StorageKind::Buffer => {
+                self.parts[part].entry(u64::from(y) * u64::from(mapping.padded().width) + u64::from(x))
+            }
+            StorageKind::Image => self.parts[part].texel([x, y]),
         }
     }
 }
