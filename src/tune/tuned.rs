@@ -254,3 +254,34 @@ impl Tuned {
         preset::write(path, self.technique, &self.settings(), &tuned)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::stats::Ratio;
+    use crate::metrics::Metrics;
+    use crate::metrics::gate::Bound;
+
+    fn row(variant: &str, mean: f64, interval: [f64; 2], flip: f64) -> BenchRow {
+        BenchRow {
+            variant: variant.to_owned(),
+            ratio: Some(Ratio { mean, interval: Some(interval), pairs: 10 }),
+            error_against_none: Some(Metrics { flip, ..Metrics::EQUAL }),
+            ..BenchRow::default()
+        }
+    }
+
+    #[test]
+    fn a_row_is_faster_where_rounds_tell_or_by_some_percent_and_where_it_is_near() {
+        let bounds = [Gate::parse("error-below", Bound::Max, "flip=0.1").unwrap()];
+        let found = |rows: &[BenchRow]| faster(rows.iter(), &bounds).map(|row| row.variant.clone());
+        let chosen = row("chosen", 1.0, [1.0, 1.0], 0.05);
+        let untold = row("untold", 0.98, [0.9, 1.06], 0.05);
+        assert_eq!(found(&[chosen.clone(), untold.clone()]), None);
+        let told = row("told", 0.99, [0.985, 0.995], 0.05);
+        assert_eq!(found(&[chosen.clone(), untold.clone(), told.clone()]).unwrap(), "told");
+        let mean = row("mean", 0.9, [0.7, 1.1], 0.05);
+        let far = row("far", 0.5, [0.4, 0.6], 0.2);
+        assert_eq!(found(&[chosen, untold, told, mean, far]).unwrap(), "mean");
+    }
+}

@@ -99,4 +99,7 @@ fn with_groups_of_one_a_killed_run_loses_one_measurement_at_most() {
     let all = lines(&read(&program, "out/rows.jsonl"));
     let variants: std::collections::BTreeSet<&str> = all.iter().map(|row| row["variant"].as_str().unwrap()).collect();
     assert_eq!((all.len(), variants.len()), (14, 14));
+    // No two rows waited for each other, but the baseline's and the one that it was first measured beside.
+    let groups: std::collections::BTreeSet<&str> = all.iter().map(|row| row["group"].as_str().unwrap()).collect();
+    assert_eq!(groups.len(), 13, "{groups:?}");
 }
