@@ -48,6 +48,14 @@ pub fn write_whole<E: Display>(path: &Path, write: impl FnOnce(&mut BufWriter<Fi
     fresh_path.persist(&target).map_err(|error| failed(&error.error))
 }
 
+/// Makes a folder, and those above it, where it is not there.
+///
+/// Errors: it cannot be made (exit code 2).
+pub fn make_folder(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path)
+        .map_err(|error| Error::request(format!("cannot make the folder {}: {error}", path.display())))
+}
+
 /// A document of ours has some kilobytes.
 const MAX_DOCUMENT_BYTES: u64 = 64 << 20;
 

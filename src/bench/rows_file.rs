@@ -3,6 +3,7 @@
 use super::row::BenchRow;
 use crate::error::{Error, Result};
 use crate::units::Bytes;
+use crate::whole_file::make_folder;
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -33,10 +34,11 @@ pub struct RowsFile {
 }
 
 impl RowsFile {
-    /// Reads what is there. `folder` exists.
+    /// Reads what is there, and makes the folder where it is not.
     ///
-    /// Errors: rows are there and `existing` refuses them, a line is no row, or the file cannot be read (exit code 2).
+    /// Errors: the folder cannot be made, rows are there and `existing` refuses them, a line is no row, or the file cannot be read (exit code 2).
     pub fn open(folder: &Path, existing: Existing) -> Result<Self> {
+        make_folder(folder)?;
         let path = folder.join(NAME);
         let mut rows = Self { path, file: None, kept_bytes: 0, kept: HashMap::new() };
         if !rows.path.exists() {

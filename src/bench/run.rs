@@ -24,6 +24,7 @@ use crate::picture::tonemap::exposure_for;
 use crate::reference::ReferenceRequest;
 use crate::sequence::Frames;
 use crate::settings::Values;
+use crate::whole_file::make_folder;
 use std::collections::VecDeque;
 use std::path::Path;
 use std::rc::Rc;
@@ -353,7 +354,7 @@ impl<'a> Sweep<'a> {
 fn write_picture(folder: &Path, row: &BenchRow, picture: &Picture, values: &Values) -> Result<()> {
     let Some(file) = picture_file(folder, row).filter(|file| !file.exists()) else { return Ok(()) };
     let parent = file.parent().expect("it is in a folder");
-    std::fs::create_dir_all(parent).map_err(|error| Error::request(format!("{}: {error}", parent.display())))?;
+    make_folder(parent)?;
     let exposure_ev =
         values.unless_auto("exposure", Values::number).or_else(|| exposure_for(picture)).unwrap_or_default();
     let options = WriteOptions { exposure_ev, tone_map: values.choice("tonemap"), ..WriteOptions::default() };

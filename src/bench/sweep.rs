@@ -9,6 +9,12 @@ pub struct Axis {
     pub values: Vec<String>,
 }
 
+impl Axis {
+    pub fn new(key: &str, values: &[&str]) -> Self {
+        Self { key: key.to_owned(), values: values.iter().map(|value| (*value).to_owned()).collect() }
+    }
+}
+
 /// A combination: a value for each axis, in the axes' order.
 pub type Point = Vec<(String, String)>;
 

@@ -21,7 +21,7 @@ use crate::techniques::bench_stage::BenchStage;
 use crate::techniques::{self, Technique, settings_of};
 use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The verb with its arguments.
@@ -251,8 +251,7 @@ fn part(text: &str) -> std::result::Result<f64, String> {
     number.ok_or_else(|| "it must be a number above 0 and up to 1".to_owned())
 }
 
-fn rows_file(folder: &PathBuf, matches: &ArgMatches) -> Result<RowsFile> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+fn rows_file(folder: &Path, matches: &ArgMatches) -> Result<RowsFile> {
     let existing = match (matches.get_flag("resume"), matches.get_flag("force")) {
         (true, _) => Existing::Resume,
         (_, true) => Existing::Overwrite,

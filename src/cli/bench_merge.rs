@@ -10,6 +10,7 @@ use crate::bench::sweep::Axis;
 use crate::bench::what::What;
 use crate::error::{Error, Result};
 use crate::progress::say;
+use crate::whole_file::make_folder;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -63,7 +64,6 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         )));
     }
     let folder = matches.get_one::<PathBuf>("output").expect("clap requires it");
-    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
     let existing = if matches.get_flag("force") { Existing::Overwrite } else { Existing::Refuse };
     let mut file = RowsFile::open(folder, existing)?;
     rows.iter().try_for_each(|row| file.append(row))?;
@@ -85,7 +85,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
 ///
 /// Errors: one cannot be copied (exit code 2).
 fn copy_into(folder: &Path, files: &[PathBuf]) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("{}: {error}", folder.display())))?;
+    make_folder(folder)?;
     for file in files {
         let copy = folder.join(file.file_name().expect("it is a file"));
         if !copy.exists() {

@@ -16,7 +16,7 @@ use crate::locality::machine::Machine;
 use crate::progress::Stage;
 use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
 use crate::units::Extent;
-use crate::whole_file::{read_document, write_whole};
+use crate::whole_file::{make_folder, read_document, write_whole};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::{Value, json};
 use std::io::Write;
@@ -101,7 +101,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     document["command"] = json!(argv);
     document["commit"] = json!(env!("QUINCUNX_COMMIT"));
     if let Some(folder) = matches.get_one::<PathBuf>("output") {
-        std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+        make_folder(folder)?;
         write_whole(&folder.join("locality.json"), |out| writeln!(out, "{document:#}"))?;
         write_whole(&folder.join("locality.txt"), |out| out.write_all(text.as_bytes()))?;
     }
@@ -113,11 +113,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
 
 fn axes(sweeps: &[String]) -> Result<Vec<Axis>> {
     if sweeps.is_empty() {
-        let axis = |(key, values): &(&str, &[&str])| Axis {
-            key: (*key).to_owned(),
-            values: values.iter().map(|value| (*value).to_owned()).collect(),
-        };
-        return Ok(AXES.iter().map(axis).collect());
+        return Ok(AXES.iter().map(|(key, values)| Axis::new(key, values)).collect());
     }
     let axes = sweep::axes(sweeps)?;
     let is_known = |axis: &&Axis| DEFAULTS.iter().any(|(key, _)| *key == axis.key);

@@ -16,7 +16,7 @@ use crate::study::page::{self, Shown};
 use crate::study::{self, Study};
 use crate::techniques::Rival;
 use crate::units::Bytes;
-use crate::whole_file::{read_document, write_whole};
+use crate::whole_file::{make_folder, read_document, write_whole};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use serde_json::{Value, json};
@@ -79,7 +79,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     }
     let folder = matches.get_one::<PathBuf>("output");
     if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
+        make_folder(folder)?;
     }
     let (mut documents, mut studies, mut budget) = (Vec::new(), Vec::new(), Ok(()));
     for mut job in job_args::jobs(matches, argv)? {

@@ -94,7 +94,8 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
             .note("--reference auto judges them by the path-traced picture"));
     }
     let folder = matches.get_one::<PathBuf>("output");
-    let mut file = folder.map(|folder| rows_file(folder, matches.get_flag("force"))).transpose()?;
+    let existing = if matches.get_flag("force") { Existing::Overwrite } else { Existing::Refuse };
+    let mut file = folder.map(|folder| RowsFile::open(folder, existing)).transpose()?;
     let request = Request {
         job: &job,
         axes: &axes,
@@ -124,11 +125,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
 /// Errors: a setting is none of the technique's (exit code 2).
 fn axes(job: &Job, texts: &[String]) -> Result<Vec<Axis>> {
     if texts.is_empty() {
-        let axis = |(key, values): &(&str, &[&str])| Axis {
-            key: (*key).to_owned(),
-            values: values.iter().map(|value| (*value).to_owned()).collect(),
-        };
-        return Ok(job.technique.tuned().iter().map(axis).collect());
+        return Ok(job.technique.tuned().iter().map(|(key, values)| Axis::new(key, values)).collect());
     }
     let axes = sweep::axes(texts)?;
     for axis in &axes {
@@ -153,11 +150,6 @@ fn bound(text: &str) -> Result<Gate> {
                 .note(format!("the errors are {}", errors().join(", "))))
         }
     }
-}
-
-fn rows_file(folder: &PathBuf, is_forced: bool) -> Result<RowsFile> {
-    std::fs::create_dir_all(folder).map_err(|error| Error::request(format!("-o {}: {error}", folder.display())))?;
-    RowsFile::open(folder, if is_forced { Existing::Overwrite } else { Existing::Refuse })
 }
 
 /// `90s`, `5m`, `1h`: more than nothing, up to a week.
