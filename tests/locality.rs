@@ -120,6 +120,8 @@ fn copies_are_counted_on_every_machine_beside_what_was_measured() {
         "16",
         "--storage",
         "image",
+        "--workgroup",
+        "16x16",
         "--sweep",
         "split=one-pass,two-pass",
         "--sweep",
@@ -200,6 +202,8 @@ fn what_cannot_be_counted_is_refused() {
         (&["--machine", "bad.json"], &["bad.json", "it is no machine"]),
         (&["--machine", "nowhere.json"], &["nowhere.json"]),
         (&["--drawn", "5", "--sweep", "copy=pull,push"], &["--drawn with --sweep copy="]),
+        (&["--drawn", "5", "--sweep", "pattern=8x8"], &["--drawn with --sweep pattern=", "2x2 and at 4x4"]),
+        (&["--seed", "2"], &["--drawn"]),
     ] {
         let ran = program.run(&[&["bench", "locality"][..], more].concat());
         assert_eq!(ran.code, 2, "{more:?}: {}", ran.err);

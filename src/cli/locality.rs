@@ -9,9 +9,10 @@ use crate::bench::sweep::{self, Axis, Point};
 use crate::bench::table::Table;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
+use crate::interrupt;
 use crate::locality::case::{Case, PassCounts, cost, total};
 use crate::locality::count::Counts;
-use crate::locality::drawn::{self, Drawn, Summary};
+use crate::locality::drawn::{self, Summary};
 use crate::locality::machine::Machine;
 use crate::progress::Stage;
 use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
@@ -73,6 +74,7 @@ pub fn command() -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u64))
                 .default_value("1")
+                .requires("drawn")
                 .help("Seed of drawn machines"),
         )
         .arg(
@@ -94,7 +96,9 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
     let axes = axes(&sweeps)?;
     let (mut document, text) = match matches.get_one::<u64>("drawn") {
-        Some(count) => of_drawn(&axes, *count, *matches.get_one::<u64>("seed").expect("it has a default"))?,
+        Some(count) => {
+            of_drawn(&axes, !sweeps.is_empty(), *count, *matches.get_one::<u64>("seed").expect("it has a default"))?
+        }
         None => of_known(&axes, &machines(matches)?, &measured(matches)?)?,
     };
     document["schema"] = json!(1);
@@ -213,6 +217,7 @@ fn of_known(axes: &[Axis], machines: &[Machine], measured: &[BenchRow]) -> Resul
             lines[0].push("measured ms".to_owned());
         }
         for (index, case) in cases.iter().enumerate() {
+            interrupt::check()?;
             let found = case.counted(machine);
             for (stage, passes) in [("split", &found.split), ("gather", &found.gather)] {
                 let counts = total(passes);
@@ -281,12 +286,18 @@ fn measured_ms(stage: &str, case: &Case, rows: &[BenchRow]) -> Option<f64> {
             && (case.split == Split::OnePass || is("block", &pair(case.block)))
             && is("copy", case.form.name())
             && is("size", &case.extent.to_string())
+            && is("workgroup", &pair(case.workgroup))
             && is("storage", case.storage.name())
     };
     Some(rows.iter().find(has)?.times_ms()?.median)
 }
 
-fn of_drawn(axes: &[Axis], count: u64, seed: u64) -> Result<(Value, String)> {
+/// `is_typed`: whether the axes are those of --sweep.
+fn of_drawn(axes: &[Axis], is_typed: bool, count: u64, seed: u64) -> Result<(Value, String)> {
+    if let Some(axis) = axes.iter().find(|axis| is_typed && ["split", "pattern"].contains(&axis.key.as_str())) {
+        let why = "one pass is held against two, at 2x2 and at 4x4";
+        return Err(Error::request(format!("--drawn with --sweep {}=: {why}", axis.key)));
+    }
     let values = |key: &str| axes.iter().find(|axis| axis.key == key).map(|axis| &axis.values[..]);
     let one = |key: &str| match values(key) {
         None => Ok(DEFAULTS.iter().find(|(known, _)| *known == key).expect("a key of the table").1.to_owned()),
@@ -312,8 +323,7 @@ fn of_drawn(axes: &[Axis], count: u64, seed: u64) -> Result<(Value, String)> {
     drop(stage);
     let summary = Summary::of(&all);
     let text = drawn_text(&summary, &blocks, seed);
-    let rows: Vec<&Drawn> = all.iter().collect();
-    Ok((json!({ "seed": seed, "blocks": blocks, "summary": summary, "drawn": rows }), text))
+    Ok((json!({ "seed": seed, "blocks": blocks, "summary": summary, "drawn": all }), text))
 }
 
 fn drawn_text(summary: &Summary, blocks: &[String], seed: u64) -> String {

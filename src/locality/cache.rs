@@ -24,7 +24,9 @@ impl Shape {
         if line_bytes % sector_bytes != 0 || line_bytes / sector_bytes > 32 {
             return Some(format!("a line of {line_bytes} bytes is not made of up to 32 sectors of {sector_bytes}"));
         }
-        let set = ways.checked_mul(line_bytes)?;
+        let Some(set) = ways.checked_mul(line_bytes).filter(|set| *set <= bytes) else {
+            return Some(format!("a set of {ways} lines of {line_bytes} is more than {bytes} bytes"));
+        };
         (bytes % set != 0).then(|| format!("{bytes} bytes are not made of sets of {ways} lines of {line_bytes}"))
     }
 

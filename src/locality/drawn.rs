@@ -4,6 +4,7 @@ use super::case::{Case, cost, total};
 use super::machine::Machine;
 use crate::error::Result;
 use crate::interrupt;
+use crate::report::spread::median;
 use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
 use crate::units::Extent;
 use serde::Serialize;
@@ -85,7 +86,7 @@ impl Summary {
         let gains = |index: usize| {
             let mut gains: Vec<f64> = all.iter().map(|one| one.gains[index]).collect();
             gains.sort_by(f64::total_cmp);
-            [gains[0], gains[gains.len() / 2], gains[gains.len() - 1]]
+            [gains[0], median(&gains), gains[gains.len() - 1]]
         };
         let blocks = all[0].regrets[0].len();
         let regret =

@@ -5,6 +5,7 @@ use super::layout::Layout;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::sampling::pcg::Pcg32;
+use crate::units::Bytes;
 use serde::{Deserialize, Serialize};
 
 /// A machine.
@@ -31,6 +32,10 @@ pub struct Machine {
     /// Bytes a second between the caches, in parts of those from memory.
     pub second_speed: f64,
 }
+
+/// Bounds of what a file may ask for: every core has a cache of its own in the host's memory.
+const MOST_COUNT: u32 = 1024;
+const MOST_BYTES: u64 = 64 << 20;
 
 /// Those that are known; docs/locality.md has them as a table.
 const KNOWN: [&str; 4] = [
@@ -67,8 +72,12 @@ impl Machine {
         if ours % theirs != 0 && theirs % ours != 0 {
             return wrong(format!("sectors of {ours} and {theirs} bytes do not fit each other"));
         }
-        if self.warp.contains(&0) || self.cores == 0 || self.resident_warps == 0 {
-            return wrong("a count is 0".to_owned());
+        let counts = [self.warp[0], self.warp[1], self.cores, self.resident_warps];
+        if counts.iter().any(|count| !(1..=MOST_COUNT).contains(count)) {
+            return wrong(format!("sides of a warp, cores and warps are 1 to {MOST_COUNT}"));
+        }
+        if [self.first, self.second].iter().any(|shape| shape.bytes > MOST_BYTES) {
+            return wrong(format!("a cache has at most {}", Bytes(MOST_BYTES)));
         }
         match self.second_speed.is_finite() && self.second_speed > 0.0 && Layout::from_word(&self.layout).is_some() {
             true => Ok(()),
@@ -159,7 +168,9 @@ mod tests {
             machine.check().unwrap_err().message().to_owned()
         };
         assert!(with(|machine| machine.first.ways = 0).contains("first: a size is 0"));
-        assert!(with(|machine| machine.cores = 0).contains("a count is 0"));
+        assert!(with(|machine| machine.cores = 0).contains("cores and warps are 1 to 1024"));
+        assert!(with(|machine| machine.warp = [u32::MAX, 1]).contains("1 to 1024"));
+        assert!(with(|machine| machine.second.bytes <<= 20).contains("at most 64.0 MiB"));
         assert!(with(|machine| machine.layout = "round".to_owned()).contains("layout"));
         assert!(with(|machine| machine.second_speed = f64::NAN).contains("second_speed"));
         assert!(
