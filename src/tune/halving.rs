@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 
 /// A rung keeps one of so many.
 const KEPT_OF: usize = 4;
+/// Rounds of the first rung, and of no other.
+pub const FIRST_ROUNDS: usize = 1;
 
 /// The one who measures.
 pub trait Trial {
@@ -43,9 +45,9 @@ pub fn halve(
     trial: &mut dyn Trial,
 ) -> Result<(Vec<usize>, Vec<Rung>)> {
     let unknown: Vec<usize> = drawn.iter().copied().filter(|place| !known.contains_key(place)).collect();
-    known.extend(trial.ratios(&unknown, 1)?);
+    known.extend(trial.ratios(&unknown, FIRST_ROUNDS)?);
     let mut left: Vec<usize> = drawn.iter().copied().filter(|place| known.contains_key(place)).collect();
-    let (mut rungs, mut rounds, mut measured) = (Vec::new(), 1, left.len());
+    let (mut rungs, mut rounds, mut measured) = (Vec::new(), FIRST_ROUNDS, left.len());
     while !left.is_empty() {
         left.sort_by(|a, b| median(&known[a]).total_cmp(&median(&known[b])));
         let candidates = left.len();

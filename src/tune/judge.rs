@@ -1,6 +1,6 @@
 //! The judge of pictures: against the reference that was asked for, else against the technique's plain form.
 
-use super::shown::{Judged, Shown};
+use super::shown::Shown;
 use crate::bench::candidate::Candidate;
 use crate::bench::reference::References;
 use crate::bench::what::What;
@@ -23,13 +23,13 @@ impl<'a> Judge<'a> {
         Self { job, session, bounds, references: References::default() }
     }
 
+    /// The picture of a candidate, judged. `settings`: those that make it.
+    ///
     /// Errors: there is nothing to judge it by (exit code 2); the picture holds NaN or infinity (1); the device fails (4).
-    pub fn judged(&mut self, candidate: &Candidate, picture: &Picture) -> Result<Judged> {
-        if self.bounds.is_empty() {
-            return Ok(Judged { errors: None, is_near: true });
-        }
+    pub fn judged(&mut self, candidate: &Candidate, picture: &Picture, settings: &str) -> Result<Shown> {
         let errors = self.errors(candidate, picture).map_err(|error| error.within(&candidate.label))?;
-        Ok(Judged { errors: Some(errors), is_near: is_near(self.bounds, &errors) })
+        let is_near = is_near(self.bounds, &errors);
+        Ok(Shown { settings: settings.to_owned(), errors: Some(errors), is_near })
     }
 
     fn errors(&mut self, candidate: &Candidate, picture: &Picture) -> Result<Metrics> {

@@ -12,9 +12,9 @@ pub struct Request<'a> {
     pub job: &'a Job,
     /// At least one.
     pub axes: &'a [Axis],
-    /// Bounds on the error of the picture; without one all pictures are near enough.
+    /// Bounds on the error of the picture, at least one.
     pub bounds: &'a [Gate],
-    /// About as long as it takes: no measurement begins after it.
+    /// About as long as it takes: no measurement but the last one begins after it.
     pub time: Duration,
     /// Where rows and their pictures go; None: nowhere.
     pub folder: Option<&'a Path>,

@@ -1,6 +1,6 @@
 //! The search: pictures first, then the times of those candidates whose pictures are near enough.
 
-use super::halving::{Rung, halve};
+use super::halving::{FIRST_ROUNDS, Rung, halve};
 use super::judge::Judge;
 use super::request::Request;
 use super::shown::{Counts, Shown};
@@ -13,6 +13,7 @@ use crate::bench::what::What;
 use crate::error::{Error, Result};
 use crate::gpu::DeviceRequest;
 use crate::job::fail_on_validation;
+use crate::picture::Picture;
 use crate::progress::say;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -24,8 +25,8 @@ const FINALISTS: usize = 4;
 const LEAST_DRAWN: usize = 24;
 /// The search takes this part of the frames that measuring all candidates would.
 const SHARE_OF_SWEEP: f64 = 0.1;
-/// Frames that a drawn candidate costs, all rungs together: 2 in the first, half of the one before in each.
-const FRAMES_A_DRAWN: f64 = 4.0;
+/// Frames that a drawn candidate costs, all rungs together, the baseline's part among them (a test counts them).
+const FRAMES_A_DRAWN: f64 = 3.7;
 /// Parts of the time after which nothing more is measured: pictures, candidates for the first time, candidates again.
 const PICTURES_UNTIL: f64 = 0.3;
 const FIRST_UNTIL: f64 = 0.55;
@@ -77,14 +78,15 @@ pub fn search(request: &Request<'_>, begun: Instant) -> Result<Found> {
         measurement,
         candidates: &space.candidates,
         baseline,
-        first_until: begun + request.time.mul_f64(PICTURES_UNTIL),
+        first_until: begun + request.time.mul_f64(FIRST_UNTIL),
         again_until: begun + request.time.mul_f64(AGAIN_UNTIL),
         frames: 0,
         refused: Vec::new(),
     };
     let mut judge = Judge::new(job, &session, request.bounds);
     let mut known = BTreeMap::new();
-    let shown = look(&space, &mut stand, &mut judge, &mut known)?;
+    let until = begun + request.time.mul_f64(PICTURES_UNTIL);
+    let shown = look(&space, &mut stand, until, &mut judge, &mut known)?;
     let near: Vec<usize> = (0..shown.len()).filter(|class| shown[*class].is_near).collect();
     if near.is_empty() {
         return Err(none_is_near(&shown, stand.refused.first(), &judge));
@@ -92,8 +94,9 @@ pub fn search(request: &Request<'_>, begun: Instant) -> Result<Found> {
     say(format!("{} of {} pictures are near enough", near.len(), shown.len()));
     let possible: usize = near.iter().map(|class| space.classes[*class].members.len()).sum();
     let neighbours: usize = request.axes.iter().map(|axis| axis.values.len() - 1).sum();
-    let mut drawn = space.drawn(&near, drawn_count(possible, neighbours, request.repeat));
-    stand.first_until = begun + request.time.mul_f64(FIRST_UNTIL);
+    let was_refused = |place: &usize| stand.refused.iter().any(|(refused, _)| refused == place);
+    let left = space.in_turn(&near).into_iter().filter(|place| !was_refused(place));
+    let mut drawn: Vec<usize> = left.take(drawn_count(possible, neighbours, request.repeat)).collect();
     let is_near = |place: &usize| near.iter().any(|class| space.classes[*class].members.contains(place));
     // What was asked for stands against the others, first.
     if let Some(asked) = space.asked.filter(is_near) {
@@ -128,21 +131,23 @@ pub fn search(request: &Request<'_>, begun: Instant) -> Result<Found> {
 fn look(
     space: &Space,
     stand: &mut Stand<'_>,
+    until: Instant,
     judge: &mut Judge<'_>,
     known: &mut BTreeMap<usize, Vec<f64>>,
 ) -> Result<Vec<Shown>> {
     let mut shown: Vec<Shown> = space.classes.iter().map(|class| Shown::unseen(&class.label)).collect();
     for turn in 0..MOST_TRIED {
         let unseen: Vec<(usize, usize)> = (0..shown.len())
-            .filter(|class| shown[*class].errors.is_none() && !shown[*class].is_near)
+            .filter(|class| shown[*class].errors.is_none())
             .filter_map(|class| Some((*space.classes[class].members.get(turn)?, class)))
             .collect();
         let members: Vec<usize> = unseen.iter().map(|(member, _)| *member).collect();
-        let found = stand.measure(&members, 1, &mut |place, picture| {
+        let mut judged = |place: usize, picture: &Picture| {
             let (_, class) = unseen.iter().find(|(member, _)| *member == place).expect("it is one of those");
-            shown[*class] = judge.judged(&space.candidates[place], picture)?.of(&space.classes[*class].label);
+            shown[*class] = judge.judged(&space.candidates[place], picture, &space.classes[*class].label)?;
             Ok(())
-        })?;
+        };
+        let found = stand.measure(&members, FIRST_ROUNDS, until, Some(&mut judged))?;
         known.extend(found);
     }
     Ok(shown)
@@ -163,16 +168,32 @@ fn none_is_near(shown: &[Shown], refused: Option<&(usize, Error)>, judge: &Judge
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::group::MOST_VARIANTS;
+    use crate::tune::halving::Trial;
+
+    /// Frames as `Stand` counts them, of candidates that are alike.
+    #[derive(Default)]
+    struct Counted {
+        frames: usize,
+    }
+
+    impl Trial for Counted {
+        fn ratios(&mut self, candidates: &[usize], rounds: usize) -> Result<Vec<(usize, Vec<f64>)>> {
+            let probes = candidates.len() + candidates.len().div_ceil(MOST_VARIANTS);
+            self.frames += probes * (rounds + 1);
+            Ok(candidates.iter().map(|place| (*place, vec![1.0; rounds])).collect())
+        }
+    }
 
     #[test]
     fn a_search_takes_a_tenth_of_a_sweep_where_that_is_enough_for_a_few() {
-        let frames = |candidates: usize, neighbours: usize, repeat: usize| {
-            let drawn = drawn_count(candidates, neighbours, repeat) as f64;
-            let all = FRAMES_A_DRAWN * drawn + sweep_frames(neighbours + FINALISTS, repeat) as f64;
-            all / sweep_frames(candidates, repeat) as f64
-        };
-        for candidates in [500, 1000, 4000] {
-            assert!((frames(candidates, 12, 10) - SHARE_OF_SWEEP).abs() < 0.01, "{candidates}");
+        for (candidates, neighbours, repeat) in [(500, 12, 10), (1000, 12, 10), (4000, 16, 20)] {
+            let drawn: Vec<usize> = (0..drawn_count(candidates, neighbours, repeat)).collect();
+            let mut counted = Counted::default();
+            halve(&drawn, FINALISTS, &mut BTreeMap::new(), &mut counted).unwrap();
+            let all = counted.frames + sweep_frames(neighbours + FINALISTS, repeat);
+            let share = all as f64 / sweep_frames(candidates, repeat) as f64;
+            assert!((share - SHARE_OF_SWEEP).abs() < 0.005, "{candidates}: {share}");
         }
         assert_eq!((drawn_count(12, 9, 10), drawn_count(100, 9, 10)), (12, LEAST_DRAWN));
     }

@@ -3,26 +3,12 @@
 use crate::metrics::Metrics;
 use serde::Serialize;
 
-/// A picture's errors, and whether they are within the bounds.
-#[derive(Clone, Copy, Debug)]
-pub struct Judged {
-    /// None where there are no bounds.
-    pub errors: Option<Metrics>,
-    pub is_near: bool,
-}
-
-impl Judged {
-    pub fn of(self, settings: &str) -> Shown {
-        Shown { settings: settings.to_owned(), errors: self.errors, is_near: self.is_near }
-    }
-}
-
 /// A picture that some of the candidates make.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shown {
     /// Those that make it, of the axes.
     pub settings: String,
-    /// None where it was not made, or there are no bounds.
+    /// None where it was not made.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors: Option<Metrics>,
     #[serde(rename = "near")]

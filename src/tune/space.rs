@@ -114,11 +114,11 @@ impl Space {
     }
 
     /// Candidates of these classes, in the order in which they are tried: of each class one in turn.
-    pub fn drawn(&self, classes: &[usize], count: usize) -> Vec<usize> {
+    pub fn in_turn(&self, classes: &[usize]) -> Vec<usize> {
         let longest = classes.iter().map(|class| self.classes[*class].members.len()).max().unwrap_or(0);
         let in_turn = (0..longest)
             .flat_map(|turn| classes.iter().filter_map(move |class| self.classes[*class].members.get(turn).copied()));
-        in_turn.take(count).collect()
+        in_turn.collect()
     }
 }
 
@@ -210,10 +210,10 @@ mod tests {
     #[test]
     fn classes_take_turns() {
         let (_, _, space) = space(&["split=two-pass", "block=8,16,32", "pattern=2x2,4x4"]);
-        let drawn = space.drawn(&[0, 1], 4);
+        let all = space.in_turn(&[0, 1]);
         let of = |place: &usize| space.classes.iter().position(|class| class.members.contains(place)).unwrap();
-        assert_eq!(drawn.iter().map(of).collect::<Vec<_>>(), [0, 1, 0, 1]);
-        assert_eq!(space.drawn(&[1], 99).len(), 3);
+        assert_eq!(all[..4].iter().map(of).collect::<Vec<_>>(), [0, 1, 0, 1]);
+        assert_eq!((all.len(), space.in_turn(&[1]).len()), (6, 3));
     }
 
     #[test]

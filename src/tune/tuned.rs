@@ -60,7 +60,7 @@ pub struct Tuned {
 
 /// Whether a row is within the bounds.
 fn row_is_near(row: &BenchRow, bounds: &[Gate]) -> bool {
-    bounds.is_empty() || row.best_known_errors().is_some_and(|errors| is_near(bounds, errors))
+    row.best_known_errors().is_some_and(|errors| is_near(bounds, errors))
 }
 
 /// A row takes the place of the fastest where its mean is below this, if the interval does not tell.
@@ -160,14 +160,12 @@ impl Tuned {
              measured: {search_frames} frames, where a sweep takes {sweep_frames}\n\n"
         );
         let cells = |cells: &[&str]| cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<String>>();
-        if !self.bounds.is_empty() {
-            let mut lines = vec![cells(&["picture", "error", "near enough"])];
-            lines.extend(self.shown.iter().map(|shown| {
-                let errors = shown.errors.map_or_else(|| "not made".to_owned(), |errors| words(&self.bounds, &errors));
-                cells(&[&shown.settings, &errors, if shown.is_near { "yes" } else { "no" }])
-            }));
-            text += &format!("{}\n", Table::of_lines(lines).text());
-        }
+        let mut lines = vec![cells(&["picture", "error", "near enough"])];
+        lines.extend(self.shown.iter().map(|shown| {
+            let errors = shown.errors.map_or_else(|| "not made".to_owned(), |errors| words(&self.bounds, &errors));
+            cells(&[&shown.settings, &errors, if shown.is_near { "yes" } else { "no" }])
+        }));
+        text += &format!("{}\n", Table::of_lines(lines).text());
         let mut lines =
             vec![cells(&["rung", "candidates", "rounds", "go on", "time of the fastest, in parts of those as asked"])];
         lines.extend(self.rungs.iter().enumerate().map(|(index, rung)| {
