@@ -15,6 +15,7 @@ use crate::locality::count::Counts;
 use crate::locality::drawn::{self, Summary};
 use crate::locality::machine::Machine;
 use crate::progress::Stage;
+use crate::settings::parse_sides;
 use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
 use crate::units::Extent;
 use crate::whole_file::{make_folder, read_document, write_whole};
@@ -36,9 +37,12 @@ const DEFAULTS: [(&str, &str); 7] = [
     ("size", "640x360"),
 ];
 
+/// Blocks where none are named.
+const BLOCKS: &[&str] = &["8", "16", "32"];
+
 /// The axes of a command without --sweep.
 const AXES: [(&str, &[&str]); 3] =
-    [("pattern", &["2x2", "4x4"]), ("split", &["one-pass", "two-pass"]), ("block", &["8", "16", "32"])];
+    [("pattern", &["2x2", "4x4"]), ("split", &["one-pass", "two-pass"]), ("block", BLOCKS)];
 
 /// The sub-verb with its arguments.
 pub fn command() -> Command {
@@ -154,9 +158,7 @@ fn measured(matches: &ArgMatches) -> Result<Vec<BenchRow>> {
 
 /// `4x4`, or `4` for both.
 fn pair(key: &str, text: &str) -> Result<[u32; 2]> {
-    let sides = text.split_once('x').unwrap_or((text, text));
-    let found = sides.0.parse().ok().zip(sides.1.parse().ok());
-    found.map(|(x, y)| [x, y]).ok_or_else(|| Error::request(format!("--sweep {key}={text}: it must be N or NxM")))
+    parse_sides(text).ok_or_else(|| Error::request(format!("--sweep {key}={text}: it must be N or NxM")))
 }
 
 fn word<T: Choice>(key: &str, text: &str) -> Result<T> {
@@ -252,7 +254,7 @@ fn line(name: &str, case: &Case, counts: &Counts, machine: &Machine) -> Vec<Stri
         format!("{:.2}", part(counts.lines as f64, instructions)),
         format!("{:.2}", part(counts.sectors as f64, instructions)),
         format!("{:.1} %", 100.0 * part(counts.first_misses as f64, counts.first_reads as f64)),
-        format!("{:.1} %", 100.0 * part(counts.second_misses as f64, counts.first_misses as f64)),
+        format!("{:.1} %", 100.0 * part(counts.second_misses as f64, counts.second_reads as f64)),
         format!("{:.3}", part(counts.memory_read_bytes as f64, asked)),
         format!("{:.3}", part(counts.memory_written_bytes as f64, asked)),
         format!("{:.1} B a pixel", part(asked, pixels)),
@@ -306,7 +308,7 @@ fn of_drawn(axes: &[Axis], is_typed: bool, count: u64, seed: u64) -> Result<(Val
     };
     let blocks = values("block").unwrap_or_default();
     let blocks =
-        if blocks.is_empty() { AXES[2].1.iter().map(|text| (*text).to_owned()).collect() } else { blocks.to_vec() };
+        if blocks.is_empty() { BLOCKS.iter().map(|text| (*text).to_owned()).collect() } else { blocks.to_vec() };
     let pairs = blocks.iter().map(|text| pair("block", text)).collect::<Result<Vec<_>>>()?;
     let [width, height] = pair("size", &one("size")?)?;
     let request = drawn::Request {

@@ -19,8 +19,9 @@ pub struct Counts {
     /// Sectors that were read from the first cache, and those that were not there.
     pub first_reads: u64,
     pub first_misses: u64,
-    /// Sectors that the second cache was asked for, reads and writes, and reads that were not there.
+    /// Sectors that the second cache was asked for, to read and to write; to read; and of these those that were not there.
     pub second_accesses: u64,
+    pub second_reads: u64,
     pub second_misses: u64,
     pub memory_read_bytes: u64,
     pub memory_written_bytes: u64,
@@ -47,6 +48,7 @@ impl Counts {
             first_reads: self.first_reads + other.first_reads,
             first_misses: self.first_misses + other.first_misses,
             second_accesses: self.second_accesses + other.second_accesses,
+            second_reads: self.second_reads + other.second_reads,
             second_misses: self.second_misses + other.second_misses,
             memory_read_bytes: self.memory_read_bytes + other.memory_read_bytes,
             memory_written_bytes: self.memory_written_bytes + other.memory_written_bytes,
@@ -188,6 +190,7 @@ impl Running<'_> {
         // A sector of the first cache may be several of the second, or a part of one.
         self.second_sectors(address, |running, address| {
             let outcome = running.second.read(address);
+            running.counts.second_reads += 1;
             if !outcome.is_hit {
                 running.counts.second_misses += 1;
                 running.counts.memory_read_bytes += running.machine.second.sector_bytes;
@@ -265,7 +268,7 @@ mod tests {
         let counts = count(&Strided { groups: 40, stride: 4, writes: true }, &machine());
         assert_eq!([counts.memory_read_bytes, counts.memory_written_bytes], [40 * 256, 40 * 256]);
         // Writes pass the first cache by: each sector asks the second once, to read and to write.
-        assert_eq!(counts.second_accesses, 2 * 40 * 8);
+        assert_eq!([counts.second_accesses, counts.second_reads], [2 * 40 * 8, 40 * 8]);
         assert_eq!(counts.plus(counts).warps, 160);
     }
 

@@ -81,7 +81,7 @@ impl Machine {
         }
         match self.second_speed.is_finite() && self.second_speed > 0.0 && Layout::from_word(&self.layout).is_some() {
             true => Ok(()),
-            false => wrong("second_speed is above 0, and layout one of linear, blocked, morton".to_owned()),
+            false => wrong(format!("second_speed is above 0, and layout one of {}", Layout::WORDS.join(", "))),
         }
     }
 
@@ -110,7 +110,7 @@ impl Machine {
             sector_bytes: sector_bytes.min(64),
             ways: one_of(&[4, 8, 16]),
         };
-        let layout = ["linear", "blocked", "morton"][one_of(&[0, 1, 2]) as usize].to_owned();
+        let layout = Layout::WORDS[one_of(&[0, 1, 2]) as usize].to_owned();
         let resident_warps = one_of(&[2, 8, 32]) as u32;
         let second_speed = one_of(&[2, 3, 4, 6]) as f64;
         Self {

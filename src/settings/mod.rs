@@ -234,7 +234,8 @@ fn parse_pair(text: &str) -> Option<[u32; 2]> {
     Some([first.parse().ok()?, second.parse().ok()?])
 }
 
-fn parse_sides(text: &str) -> Option<[u32; 2]> {
+/// `NxM`, or `N` for both.
+pub fn parse_sides(text: &str) -> Option<[u32; 2]> {
     match text.parse() {
         Ok(side) => Some([side; 2]),
         Err(_) => parse_pair(text),
