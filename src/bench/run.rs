@@ -322,7 +322,7 @@ impl<'a> Sweep<'a> {
                 }
             }
             if let Some(folder) = self.pictures {
-                write_picture(folder, &row, picture, values)?;
+                write_picture(folder, &row, picture, &self.head.measurement.job.values)?;
             }
             self.emit(member.candidate, row)?;
         }
@@ -348,7 +348,8 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Writes the picture of a row, as a PNG of `render` with these values; one that is there is of the same hash.
+/// Writes the picture of a row as a PNG with the request's own exposure and tone mapping, which are the same for all rows: a file is
+/// named by the light, and one that is there has the same.
 ///
 /// Errors: it cannot be written (exit code 2).
 fn write_picture(folder: &Path, row: &BenchRow, picture: &Picture, values: &Values) -> Result<()> {

@@ -6,7 +6,7 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, html};
 use std::path::{Path, PathBuf};
 
-/// A page with more would not open.
+/// A file with more is none of our pictures.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// PNG files by their titles. Nothing where there are none.

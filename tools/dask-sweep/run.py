@@ -16,7 +16,8 @@ import sys
 
 from distributed import Client, LocalCluster, as_completed
 
-# How often a shard may lose its worker.
+# How often a shard whose program was ended by a signal is begun again. Workers that are lost are counted by Dask itself
+# (distributed.scheduler.allowed-failures).
 RETRIES = 5
 
 
@@ -50,13 +51,15 @@ def main():
     where.add_argument("--workers", type=int, help="workers on this machine, each of which measures one shard at a time")
     asked = parser.parse_args()
 
+    if asked.shards < 1 or (asked.workers is not None and asked.workers < 1):
+        parser.error("--shards and --workers are at least 1")
     output = asked.output.resolve()
     shards = [output / "shards" / str(number) for number in range(1, asked.shards + 1)]
     for shard in shards:
         shard.mkdir(parents=True, exist_ok=True)
     sweep = str(pathlib.Path(asked.sweep).resolve())
     cluster = None
-    if asked.workers:
+    if asked.workers is not None:
         # A worker is a process: times of shards beside each other on one machine are for trying, not for quoting.
         cluster = LocalCluster(n_workers=asked.workers, threads_per_worker=1, dashboard_address=None)
     failed = 0
