@@ -12,6 +12,7 @@ mod description;
 pub mod descriptors;
 pub mod device;
 mod dispatch;
+mod draw;
 pub mod failure;
 pub mod image;
 pub mod interface;

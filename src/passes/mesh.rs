@@ -83,21 +83,11 @@ pub fn depth_bytes(scene: &SceneGpu, list: &DrawList) -> u64 {
 
 /// Binds the scene's streams, inside rendering.
 pub fn bind_streams(cmd: &Commands, scene: &SceneGpu) {
-    let device = &cmd.gpu().device;
-    let common = [scene.pose.positions.handle, scene.pose.attributes.handle];
-    let streams: Vec<_> =
-        common.into_iter().chain(scene.extended.as_ref().map(|extended| extended.attributes.handle)).collect();
-    // SAFETY: the buffer is being recorded; the scene outlives the recorded frame.
-    unsafe {
-        device.cmd_bind_vertex_buffers(cmd.buffer(), 0, &streams, &[0; VERTEX_BUFFERS.len()][..streams.len()]);
-    }
-    bind_indices(cmd, &scene.indices);
-}
-
-/// Binds an index list, inside rendering.
-pub fn bind_indices(cmd: &Commands, indices: &Buffer) {
-    // SAFETY: the buffer is being recorded; the scene and the resources outlive the recorded frame.
-    unsafe { cmd.gpu().device.cmd_bind_index_buffer(cmd.buffer(), indices.handle, 0, vk::IndexType::UINT32) };
+    let extended = scene.extended.as_ref().map(|extended| &extended.attributes);
+    let streams: Vec<&Buffer> =
+        [&scene.pose.positions, &scene.pose.attributes].into_iter().chain(extended).map(AsRef::as_ref).collect();
+    cmd.bind_streams(&streams);
+    cmd.bind_indices(&scene.indices);
 }
 
 /// Draws `calls` with `pipeline`, which is bound, setting sides, winding and material where they change; `changed` is told
@@ -129,10 +119,9 @@ pub fn draw_each<'a>(
     for_each(cmd, pipeline, scene, None, calls, |call| {
         before(call);
         let DrawCall { index_count, first_index, vertex_offset, draw, .. } = *call;
-        // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
-        unsafe {
-            cmd.gpu().device.cmd_draw_indexed(cmd.buffer(), index_count, 1, first_index, vertex_offset, draw);
-        }
+        let indices = first_index..first_index + index_count;
+        // SAFETY: the importer checked that every index has its vertex.
+        unsafe { cmd.draw_indexed(indices, vertex_offset, draw..draw + 1) };
     });
 }
 

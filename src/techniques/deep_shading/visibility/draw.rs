@@ -67,7 +67,7 @@ pub fn draw<'a>(
 ) {
     let DrawInputs { scene, primitives, .. } = inputs;
     if stages.is_indexed {
-        mesh::bind_indices(cmd, &scene.indices);
+        cmd.bind_indices(&scene.indices);
     }
     mesh::for_each(cmd, pipeline, scene, stages.sides, calls, |call| {
         let params = primitives.params(scene, call);
@@ -78,7 +78,7 @@ pub fn draw<'a>(
             // SAFETY: the buffer is being recorded inside rendering; the importer checked that every index has its vertex.
             unsafe {
                 if stages.is_indexed {
-                    device.cmd_draw_indexed(buffer, count, instances, first, call.vertex_offset, 0);
+                    cmd.draw_indexed(first..first + count, call.vertex_offset, 0..instances);
                 } else {
                     device.cmd_draw(buffer, count, instances, first, 0);
                 }

@@ -121,14 +121,14 @@ impl ShadowVolumes {
         cmd.set_stencil(0, 0xff);
         let index_count = 3 * casting.triangles.len() as u32;
         let (device, buffer) = (&cmd.gpu().device, cmd.buffer());
+        cmd.bind_streams(&[&self.positions]);
+        cmd.bind_indices(&self.triangles);
         // SAFETY: the buffer is being recorded inside rendering; `ShadowCasters` has every index below its light's positions.
         unsafe {
-            device.cmd_bind_vertex_buffers(buffer, 0, &[self.positions.handle], &[0]);
-            device.cmd_bind_index_buffer(buffer, self.triangles.handle, 0, vk::IndexType::UINT32);
             device.cmd_set_cull_mode(buffer, vk::CullModeFlags::NONE);
             device.cmd_set_front_face(buffer, vk::FrontFace::COUNTER_CLOCKWISE);
             let (first_index, first_position) = (3 * casting.triangles.start, casting.first_position as i32);
-            device.cmd_draw_indexed(buffer, index_count, 1, first_index, first_position, 0);
+            cmd.draw_indexed(first_index..first_index + index_count, first_position, 0..1);
         }
         cmd.bind_with_set(&self.light, params, sets.light);
         cmd.set_stencil(0, 0xff);

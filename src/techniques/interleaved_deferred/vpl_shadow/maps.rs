@@ -166,9 +166,9 @@ impl HiddenByMaps {
                 let Casters { fine, coarse } = &face.casters;
                 self.pipelines.draw(cmd, scene, &sets, view, fine);
                 if let Some(indices) = self.indices.as_ref().filter(|_| !coarse.opaque.is_empty()) {
-                    mesh::bind_indices(cmd, indices);
+                    cmd.bind_indices(indices);
                     self.pipelines.draw(cmd, scene, &sets, view, coarse);
-                    mesh::bind_indices(cmd, &scene.indices);
+                    cmd.bind_indices(&scene.indices);
                 }
             };
             if atlas.shape == MapShape::Layers {

@@ -1,0 +1,35 @@
+//! Draws of indexed triangles: streams of vertices, indices, and which of them are drawn. All inside rendering.
+
+use super::{Buffer, Commands};
+use ash::vk;
+use std::ops::Range;
+
+impl Commands {
+    /// Binds streams of vertices, the first at 0.
+    pub fn bind_streams(&self, streams: &[&Buffer]) {
+        let handles: Vec<_> = streams.iter().map(|stream| stream.handle).collect();
+        let offsets = vec![0; handles.len()];
+        // SAFETY: the buffer is being recorded; the streams outlive the recorded frame.
+        unsafe { self.gpu().device.cmd_bind_vertex_buffers(self.buffer(), 0, &handles, &offsets) };
+    }
+
+    /// Binds indices of 32 bits.
+    pub fn bind_indices(&self, indices: &Buffer) {
+        // SAFETY: the buffer is being recorded; the indices outlive the recorded frame.
+        unsafe { self.gpu().device.cmd_bind_index_buffer(self.buffer(), indices.handle, 0, vk::IndexType::UINT32) };
+    }
+
+    /// Draws what `indices` of the bound ones say, each with `vertex_offset` added to it, once for each of `instances`.
+    ///
+    /// # Safety
+    /// Every such index has its vertex in the bound streams.
+    pub unsafe fn draw_indexed(&self, indices: Range<u32>, vertex_offset: i32, instances: Range<u32>) {
+        let (index_count, instance_count) = (indices.len() as u32, instances.len() as u32);
+        let device = &self.gpu().device;
+        // SAFETY: the buffer is being recorded inside rendering; as to the indices, the caller vouches for them.
+        unsafe {
+            let (first, first_instance) = (indices.start, instances.start);
+            device.cmd_draw_indexed(self.buffer(), index_count, instance_count, first, vertex_offset, first_instance);
+        }
+    }
+}
