@@ -344,13 +344,14 @@ impl Job {
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let strategy = self.values.choice("allocation");
+        let (strategy, touched) = (self.values.choice("allocation"), self.values.choice("touched"));
         let budget_bytes = self.values.bytes("memory-budget");
         DeviceRequest {
             selector: self.device.clone(),
             validate: self.validate,
             strategy,
             budget_bytes,
+            touched,
             // The layer's checks of what shaders read see nothing where the device mends it; and it may cost time.
             robust: !self.validate && !self.profile,
             hook: None,
@@ -381,7 +382,7 @@ impl Job {
             each_frame: renderer.passes(),
             clock: renderer.clock(),
         };
-        let table = session.memory_table(renderer, Some(&rendered.memory))?;
+        let memory = renderer.touched(session.memory_table(renderer, Some(&rendered.memory))?)?.report();
         let counters = renderer.measured_counters()?;
         Ok(RunReport {
             schema: SCHEMA,
@@ -394,8 +395,8 @@ impl Job {
             scene: SceneRow::of(scene, view, lights),
             settings: rendered.settings.clone(),
             aovs: rendered.aovs.iter().map(|aov| AovRow::of(aov, picture.extent)).collect(),
-            times: Times::of(&passes, &rendered.times, self.profile),
-            memory: table.touched_as(&renderer.touched_bytes()?).report(),
+            times: Times::of(&passes, &rendered.times, self.profile).counted(memory.touched.as_ref()),
+            memory,
             counters: counters.into_iter().map(|(key, count)| (key.to_owned(), count)).collect(),
             image: ImageRow::of(picture, path, (!is_exr(path)).then_some(*exposure_ev))?,
             notes: Vec::from_iter(notes::of_nothing_seen(picture, *exposure_ev, scene, view, lights.has_rig)),

@@ -44,6 +44,7 @@
 //! | [`caps`] | what devices can do, as plain data |
 //! | [`picture`] | pictures on the host, tone mapping, files |
 //! | [`gpu`], [`memory`] | a thin floor over ash; the only room that allocates |
+//! | [`spirv`] | shaders that count what they touch: modules rewritten as data |
 //! | [`selftest`] | every method that a device supports beside a plain twin, as one document |
 //! | [`metrics`], [`mod@reference`], [`mod@bench`] | errors of pictures; against what; times of variants, in turn |
 //! | [`tune`] | settings chosen by measuring them on the machine at hand |
@@ -83,6 +84,7 @@ pub mod sequence;
 pub mod session;
 pub mod settings;
 pub mod shading;
+pub mod spirv;
 pub mod study;
 pub mod svg;
 pub mod techniques;

@@ -35,6 +35,7 @@ mod selftest;
 mod sequence;
 mod settings;
 mod shading;
+mod spirv;
 mod study;
 mod techniques;
 mod tune;

@@ -3,6 +3,7 @@
 use super::sweep::{Axis, Point, label};
 use crate::error::{Error, Result};
 use crate::job::Job;
+use crate::memory::touched::Touched;
 use crate::settings::{Setting, Values, readers};
 use crate::techniques::{self, Technique, settings_of, timed};
 use std::collections::BTreeMap;
@@ -165,6 +166,11 @@ pub fn changed<'a, 'b>(
 
 /// All variants share a device and a scene: what is settled with those cannot differ.
 fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
+    let touched: Touched = values.choice("touched");
+    if touched != Touched::Off {
+        let why = format!("--touched {}: frames that count are slow, and their times say nothing", touched.name());
+        return Err(Error::request(why).note("`render` and `memory` count"));
+    }
     for key in ["allocation", "memory-budget", "texture-limit", "texture-gutters", "anisotropy"] {
         let text = values.text(key);
         if text != job.values.text(key) {

@@ -99,7 +99,7 @@ impl Head<'_> {
         let baseline = samples[BASELINE].totals_ms();
         let [read, written] = member.variant.traffic_bytes();
         let used = settings(session, renderer, values);
-        let memory = session.memory_table(renderer, None)?.touched_as(&renderer.touched_bytes()?).sums();
+        let memory = renderer.touched(session.memory_table(renderer, None)?)?.sums();
         let counters = renderer.measured_counters()?;
         let spread = Spread::of(&times);
         let (frame_ms, stage_ms) = if *what == What::Frame { (spread, None) } else { (None, spread) };

@@ -1,6 +1,7 @@
 //! A buffer: handle, description, allocation.
 
 use super::access::AccessSet;
+use super::marks::Marked;
 use super::{Berth, Gpu};
 use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
@@ -18,6 +19,8 @@ pub struct Buffer {
     pub bytes: u64,
     /// Last accesses of the resource that had its bytes before it in the frame.
     pub(super) takes_over: AccessSet,
+    /// Where it is counted what touches it; None: nobody counts.
+    pub(super) marked: Option<Arc<Marked>>,
     allocation: ManuallyDrop<Allocation>,
 }
 
@@ -60,13 +63,13 @@ impl Buffer {
             // SAFETY: fresh memory of an allowed type, in bounds, bound once.
             unsafe { gpu.device.bind_buffer_memory(handle, allocation.handle, allocation.offset) }
                 .map_err(|result| Error::device(format!("binding buffer {name}: {result}")))?;
-            Ok(allocation)
+            Ok((allocation, gpu.marks.as_ref().map(|marks| marks.buffer(name, bytes)).transpose()?))
         });
         match bound {
-            Ok(allocation) => {
+            Ok((allocation, marked)) => {
                 gpu.name(handle, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
-                Ok(Self { gpu: gpu.clone(), handle, name, bytes, takes_over: berth.takes_over(), allocation })
+                Ok(Self { gpu: gpu.clone(), handle, name, bytes, takes_over: berth.takes_over(), marked, allocation })
             }
             Err(error) => {
                 // SAFETY: never used.
@@ -90,7 +93,11 @@ impl Buffer {
     pub fn address(&self) -> u64 {
         let info = vk::BufferDeviceAddressInfo::default().buffer(self.handle);
         // SAFETY: a live buffer with memory, of a live device with the feature.
-        unsafe { self.gpu.device.get_buffer_device_address(&info) }
+        let address = unsafe { self.gpu.device.get_buffer_device_address(&info) };
+        if let (Some(marks), Some(marked)) = (&self.gpu.marks, &self.marked) {
+            marks.at_address(marked, address);
+        }
+        address
     }
 
     /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.

@@ -6,6 +6,9 @@
 use super::access::AccessSet;
 use super::descriptors::{Bound, Descriptors};
 use super::image::Image;
+use super::marks::Marked;
+use super::marks::noted::{Noted, Notes};
+use super::marks::shape::Part;
 use super::pipeline::GraphicsPipeline;
 use super::statistics::Statistics;
 use super::timing::{Clock, Timestamps};
@@ -93,6 +96,8 @@ pub struct Commands {
     pub(super) truth: HashMap<Target, AccessSet>,
     touched: Vec<Touched>,
     heirs: Heirs,
+    /// Touches without a shader.
+    pub(super) notes: Notes,
 }
 
 /// For each resource that takes bytes over, the resources that had them before it in the frame.
@@ -123,6 +128,7 @@ impl Commands {
             truth: HashMap::new(),
             touched: Vec::new(),
             heirs: Heirs::new(),
+            notes: Notes::default(),
         };
         gpu.name(pool, name);
         if has_statistics {
@@ -189,6 +195,9 @@ impl Commands {
             statistics.begin(self.buffer(), index);
         }
         record(self).map_err(|error| error.within(name))?;
+        if self.gpu.marks.is_some() {
+            self.wait_for_all();
+        }
         if let Some(statistics) = &self.statistics {
             statistics.end(self.buffer(), index);
         }
@@ -241,6 +250,13 @@ impl Commands {
             .image_memory_barriers(&images);
         // SAFETY: the buffer is being recorded, outside rendering; the resources are alive.
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.buffer(), &info) };
+    }
+
+    /// A touch without a shader. `marked`: of a resource; None where nobody counts.
+    pub(super) fn note(&self, marked: &Option<Arc<Marked>>, writes: bool, part: Part) {
+        if let (Some(marked), Some(pass)) = (marked, self.passes.len().checked_sub(1)) {
+            self.notes.add(pass, Noted::Part { marked: marked.clone(), writes, part });
+        }
     }
 
     /// All work that comes waits for all that was, and sees what it wrote.
@@ -317,6 +333,12 @@ impl Commands {
     /// Binds a set that was made for `interface` as set 0.
     pub(super) fn bind_set(&self, point: vk::PipelineBindPoint, interface: &Interface, set: Option<vk::DescriptorSet>) {
         let Some(set) = set else { return };
+        if let Some(slots) = self.descriptors.slots(set) {
+            for (name, pass) in slots.unknown().iter().zip(std::iter::repeat(self.passes.len().saturating_sub(1))) {
+                self.notes.add(pass, Noted::Unknown(name.clone()));
+            }
+            self.notes.bind_slots(slots.clone());
+        }
         // SAFETY: the buffer is being recorded; the set was made for this layout and outlives the recorded frame.
         unsafe {
             self.gpu.device.cmd_bind_descriptor_sets(self.buffer(), point, interface.layout, 0, &[set], &[]);
@@ -400,6 +422,7 @@ impl Commands {
     pub fn clear(&mut self, target: &Buffer) {
         // SAFETY: the buffer is being recorded outside rendering; the caller stated the barriers.
         unsafe { self.gpu.device.cmd_fill_buffer(self.buffer(), target.handle, 0, vk::WHOLE_SIZE, 0) };
+        self.note(&target.marked, true, Part::All);
     }
 
     /// Where the attachments hold what the clip volume holds, and which texels draws may touch, until the next rendering begins.
@@ -439,6 +462,12 @@ impl Commands {
         // long as the rows.
         unsafe {
             self.gpu.device.cmd_copy_image_to_buffer(self.buffer(), source.handle, layout, target.handle, &[region]);
+        }
+        self.note(&source.marked, false, Part::Layers(0..source.description.layers()));
+        let texel_bytes = u64::from(super::image::texel_bytes(source.description.format));
+        for row in 0..u64::from(extent.height) {
+            let begin = row * u64::from(row_pitch) * texel_bytes;
+            self.note(&target.marked, true, Part::Bytes(begin..begin + u64::from(extent.width) * texel_bytes));
         }
     }
 }

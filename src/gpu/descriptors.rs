@@ -3,10 +3,12 @@
 use super::buffer::Buffer;
 use super::image::Image;
 use super::interface::Interface;
+use super::marks::Slots;
 use super::shader::BindingKind;
 use super::{Access, Gpu, Structure};
 use crate::error::{Error, Result};
 use ash::vk;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Something a shader binds, by its name in GLSL.
@@ -25,11 +27,13 @@ pub enum Bound<'a> {
 pub struct Descriptors {
     gpu: Arc<Gpu>,
     pools: Vec<vk::DescriptorPool>,
+    /// Slots of the sets, on a device that counts.
+    slots: HashMap<vk::DescriptorSet, Arc<Slots>>,
 }
 
 impl Descriptors {
     pub fn new(gpu: &Arc<Gpu>) -> Self {
-        Self { gpu: gpu.clone(), pools: Vec::new() }
+        Self { gpu: gpu.clone(), pools: Vec::new(), slots: HashMap::new() }
     }
 
     /// A set for `interface`, written from what is bound by name; None where its shaders bind nothing.
@@ -40,10 +44,11 @@ impl Descriptors {
             let known = interface.bindings.iter().any(|binding| binding.name == *name);
             assert!(known, "{}: nothing is called {name}", interface.label);
         }
-        if interface.bindings.is_empty() {
+        if interface.bindings.is_empty() && self.gpu.marks.is_none() {
             return Ok(None);
         }
         let set = self.allocate(interface)?;
+        self.count(set, interface, bound)?;
         for binding in &interface.bindings {
             let (_, value) = bound
                 .iter()
@@ -86,6 +91,35 @@ impl Descriptors {
             unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
         }
         Ok(Some(set))
+    }
+
+    /// Slots of a set, through which its shaders count.
+    fn count(&mut self, set: vk::DescriptorSet, interface: &Interface, bound: &[(&str, Bound<'_>)]) -> Result<()> {
+        let Some(marks) = &self.gpu.marks else { return Ok(()) };
+        let mut slots = marks.slots(interface.has_vertices)?;
+        for (name, value) in bound {
+            let binding = interface.bindings.iter().find(|binding| binding.name == *name);
+            let (marked, sampler) = match value {
+                Bound::Buffer(buffer) => (&buffer.marked, None),
+                Bound::Storage(image) => (&image.marked, None),
+                Bound::Sampled(image, sampler, _) => (&image.marked, Some(*sampler)),
+                Bound::Structure(structure) => {
+                    slots.add_unknown(&structure.buffer.name);
+                    continue;
+                }
+            };
+            if let (Some(binding), Some(marked)) = (binding, marked) {
+                slots.set_binding(binding.binding, marked, sampler);
+            }
+        }
+        slots.write_to(&self.gpu.device, set);
+        self.slots.insert(set, Arc::new(slots));
+        Ok(())
+    }
+
+    /// The slots of a set; None where nobody counts.
+    pub(super) fn slots(&self, set: vk::DescriptorSet) -> Option<&Arc<Slots>> {
+        self.slots.get(&set)
     }
 
     fn allocate(&mut self, interface: &Interface) -> Result<vk::DescriptorSet> {

@@ -1,10 +1,12 @@
 //! Instance, choice of device, queue, enabled features; and what every other file of this room needs of them.
 
 use super::calibration::Calibration;
+use super::marks::Marks;
 use super::pipeline_store::PipelineStore;
 use super::{probe, validation};
 use crate::caps::{Caps, HeapBudget, Identity};
 use crate::error::{Error, Result};
+use crate::memory::touched::Touched;
 use crate::memory::{Memory, Strategy};
 use ash::vk;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -31,6 +33,8 @@ pub struct DeviceRequest {
     /// Reads and writes of shaders beyond a buffer's end hit nothing else (robustBufferAccess). Without, such a mistake may
     /// lose the device; what looks for mistakes and what is timed does without.
     pub robust: bool,
+    /// Whether it is counted what frames touch: shaders do it themselves, which costs much time.
+    pub touched: Touched,
     /// None: the driver's own functions.
     pub hook: Option<DeviceHook>,
     /// Changes what devices say of themselves before one is chosen: how a test has a device that is not there.
@@ -46,6 +50,8 @@ pub struct Gpu {
     /// `DeviceRequest::robust`.
     pub is_robust: bool,
     pub memory: Arc<Memory>,
+    /// What frames touch; None without `DeviceRequest::touched`.
+    pub marks: Option<Arc<Marks>>,
     /// Pipelines that were made before: a second renderer of the same settings compiles nothing.
     pub(super) pipelines: PipelineStore,
     names: Option<ash::ext::debug_utils::Device>,
@@ -281,6 +287,8 @@ impl Gpu {
         // First, for what is said while a device is opened.
         let validation = log.map(|log| Validation::listen(&entry, &instance, log)).transpose()?;
         let (physical, caps) = choose(&instance, request)?;
+        let granule_bytes = request.touched.granule_bytes();
+        granule_bytes.map_or(Ok(()), |_| probe::require_counting(&instance, physical, &caps))?;
         let queue_family = probe::queue_family(&instance, physical).expect("`choose` asked for it");
         let priorities = [1.0];
         let queues =
@@ -297,6 +305,7 @@ impl Gpu {
             .sampler_anisotropy(caps.features.sampler_anisotropy)
             .shader_storage_image_extended_formats(caps.features.storage_image_extended_formats)
             .fragment_stores_and_atomics(caps.features.fragment_stores_and_atomics)
+            .vertex_pipeline_stores_and_atomics(granule_bytes.is_some())
             .depth_clamp(caps.features.depth_clamp)
             .occlusion_query_precise(caps.features.occlusion_query_precise)
             .sample_rate_shading(caps.features.sample_rate_shading)
@@ -348,6 +357,9 @@ impl Gpu {
         let calibration = has_both_clocks.then(|| Calibration::of(&entry, &instance, physical, &device)).flatten();
         let memory =
             Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
+        let marks = granule_bytes.map(|bytes| Marks::new(&device, &memory, bytes)).transpose();
+        // Nothing else holds the device yet.
+        let marks = marks.inspect_err(|_| unsafe { device.destroy_device(None) })?;
         Ok(Self {
             caps,
             device,
@@ -355,6 +367,7 @@ impl Gpu {
             queue_family,
             is_robust: request.robust,
             memory,
+            marks: marks.map(Arc::new),
             pipelines: PipelineStore::default(),
             names,
             structures,
@@ -436,6 +449,7 @@ impl Drop for Gpu {
         unsafe {
             // A lost device cannot be waited for, and need not be.
             let _ = self.device.device_wait_idle();
+            self.marks.iter().for_each(|marks| marks.close());
             self.memory.close();
             self.pipelines.close(&self.device);
             self.device.destroy_device(None);

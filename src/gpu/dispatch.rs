@@ -1,10 +1,14 @@
 //! Dispatches of compute shaders, one, in bands, or of as many workgroups as the device has written.
 
 use super::bands;
+use super::marks::shape::Part;
 use super::pipeline::ComputePipeline;
 use super::{Bound, Buffer, Commands};
 use crate::error::{Error, Result};
 use ash::vk;
+
+/// What a dispatch reads that the device has written the workgroups of.
+const GROUPS_BYTES: u64 = 12;
 
 /// One of several dispatches that a pass is made of.
 pub struct DispatchPart<'a> {
@@ -62,6 +66,7 @@ impl Commands {
         // SAFETY: pipeline, descriptors and params are bound; the caller stated the barriers, and the buffer's shader keeps
         // the numbers within the limits that every device has.
         unsafe { self.gpu.device.cmd_dispatch_indirect(self.buffer(), groups.handle, 0) };
+        self.note(&groups.marked, false, Part::Bytes(0..GROUPS_BYTES));
         Ok(())
     }
 
@@ -81,6 +86,7 @@ impl Commands {
                 self.next_band()?;
             }
             self.bind_compute(pipeline, params, set);
+            self.note(&groups.marked, false, Part::Bytes(offset..offset + GROUPS_BYTES));
             let (device, layout) = (&self.gpu.device, pipeline.interface.layout);
             // SAFETY: pipeline, descriptors and params are bound, set 1 has the layout that the pipeline was made with; the caller
             // stated the barriers, and the buffer's shader keeps the numbers within the limits that every device has.

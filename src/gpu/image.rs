@@ -1,6 +1,8 @@
 //! An image: handle, view, description, allocation.
 
 use super::access::AccessSet;
+use super::marks::Marked;
+use super::marks::shape::Texels;
 use super::{Berth, Gpu};
 use crate::caps::Limits;
 use crate::error::{Error, Result};
@@ -54,6 +56,13 @@ impl ImageDescription {
     /// Texels from front to back, of a flat image one.
     pub fn slices(&self) -> u32 {
         self.depth.unwrap_or(1)
+    }
+
+    /// The texels in granules.
+    fn texels(&self, granule_bytes: u64) -> Texels {
+        let Self { extent: Extent { width, height }, level_count: levels, samples, .. } = *self;
+        let layers = self.layers() * self.slices() * samples;
+        Texels { layers, levels, samples, ..Texels::new([width, height], texel_bytes(self.format), granule_bytes) }
     }
 
     /// Bytes by arithmetic, all levels, layers, slices and samples; what the driver requires may be more.
@@ -168,6 +177,8 @@ pub struct Image {
     pub description: ImageDescription,
     /// Last accesses of the resource that had its bytes before it in the frame.
     pub(super) takes_over: AccessSet,
+    /// Where it is counted what touches it; None: nobody counts.
+    pub marked: Option<Arc<Marked>>,
     allocation: ManuallyDrop<Allocation>,
 }
 
@@ -205,8 +216,11 @@ impl Image {
         // SAFETY: a live device; the info has no pointers.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
-        match Self::bind(gpu, name, group, description, handle, berth) {
-            Ok((allocation, Views { view, storage, sampled, layers })) => {
+        let bound = Self::bind(gpu, name, group, description, handle, berth);
+        let marked =
+            gpu.marks.as_ref().map(|marks| marks.image(name, description.texels(marks.granule_bytes()))).transpose();
+        match bound.and_then(|bound| Ok((bound, marked?))) {
+            Ok(((allocation, Views { view, storage, sampled, layers }), marked)) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);
                 let (name, allocation) = (name.to_owned(), ManuallyDrop::new(allocation));
@@ -221,6 +235,7 @@ impl Image {
                     name,
                     description,
                     takes_over,
+                    marked,
                     allocation,
                 })
             }

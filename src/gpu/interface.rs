@@ -1,7 +1,7 @@
 //! What a pipeline binds: descriptor set layouts and push constants, from its shaders and not from hands.
 
-use super::Gpu;
 use super::shader::{Binding, BindingKind, Shader};
+use super::{Gpu, marks};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::collections::BTreeMap;
@@ -18,6 +18,8 @@ pub struct Interface {
     pub push_stages: vk::ShaderStageFlags,
     pub push_bytes: u32,
     pub label: String,
+    /// A stage of it is made of vertices.
+    pub has_vertices: bool,
 }
 
 impl Interface {
@@ -47,6 +49,8 @@ impl Interface {
                 push_bytes = push_bytes.max(params.size_bytes.next_multiple_of(4));
             }
         }
+        let all_stages = shaders.iter().fold(vk::ShaderStageFlags::empty(), |all, shader| all | shader.stage.flags());
+        let marks = gpu.marks.as_ref().map(|_| marks::layout_binding(all_stages));
         let layout_bindings: Vec<_> = merged
             .values()
             .map(|(binding, stages)| {
@@ -56,6 +60,7 @@ impl Interface {
                     .descriptor_count(binding.count)
                     .stage_flags(*stages)
             })
+            .chain(marks)
             .collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&layout_bindings);
         // SAFETY: a live device; the bindings outlive the call.
@@ -75,7 +80,9 @@ impl Interface {
                 gpu.name(own, &label);
                 gpu.name(layout, &label);
                 let owned = vec![own];
-                Ok(Self { gpu: gpu.clone(), layout, set_layouts, owned, bindings, push_stages, push_bytes, label })
+                let has_vertices = all_stages.contains(vk::ShaderStageFlags::VERTEX);
+                let gpu = gpu.clone();
+                Ok(Self { gpu, layout, set_layouts, owned, bindings, push_stages, push_bytes, label, has_vertices })
             }
             Err(result) => {
                 // SAFETY: never used.

@@ -16,6 +16,7 @@ mod draw;
 pub mod failure;
 pub mod image;
 pub mod interface;
+pub mod marks;
 pub mod occlusion;
 pub mod pipeline;
 mod pipeline_store;

@@ -18,8 +18,12 @@ struct Module<'a> {
 }
 
 impl<'a> Module<'a> {
-    fn new(gpu: &'a Gpu, shader: &Shader) -> Result<Self> {
-        let words = shader.words();
+    /// `streams`: what vertices are made of.
+    fn new(gpu: &'a Gpu, shader: &Shader, streams: &[VertexBuffer]) -> Result<Self> {
+        let words = match &gpu.marks {
+            Some(marks) => marks.counting(shader, streams)?,
+            None => shader.words(),
+        };
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: build.rs wrote valid SPIR-V; the words outlive the call.
         let handle = unsafe { gpu.device.create_shader_module(&info, None) }
@@ -119,7 +123,7 @@ impl ComputePipeline {
     }
 
     fn make(gpu: &Gpu, shader: &Shader, constants: Constants<'_>, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
-        let module = Module::new(gpu, shader)?;
+        let module = Module::new(gpu, shader, &[])?;
         let specialization = Specialization::new(shader, constants);
         let specialization_info = specialization.info();
         let stage = vk::PipelineShaderStageCreateInfo::default()
@@ -178,7 +182,8 @@ impl GraphicsPipeline {
         shaders: &[&Shader],
         interface: &Interface,
     ) -> Result<vk::Pipeline> {
-        let modules: Vec<Module<'_>> = shaders.iter().map(|shader| Module::new(gpu, shader)).collect::<Result<_>>()?;
+        let modules: Vec<Module<'_>> =
+            shaders.iter().map(|shader| Module::new(gpu, shader, description.vertex_buffers)).collect::<Result<_>>()?;
         let specializations: Vec<Specialization> =
             shaders.iter().map(|shader| Specialization::new(shader, description.constants)).collect();
         let infos: Vec<vk::SpecializationInfo<'_>> = specializations.iter().map(Specialization::info).collect();

@@ -1,6 +1,7 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
 use crate::caps::{Caps, ConservativeRules, Features, Formats, Heap, HeapBudget, Identity, Limits, MemoryType};
+use crate::error::{Error, Result};
 use ash::vk;
 use std::ffi::CStr;
 
@@ -231,5 +232,22 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             })
             .collect(),
         layout: None,
+    }
+}
+
+/// Errors: shaders of a stage cannot write what they count (exit code 3).
+pub fn require_counting(instance: &ash::Instance, physical: vk::PhysicalDevice, caps: &Caps) -> Result<()> {
+    // SAFETY: a live instance and one of its physical devices.
+    let features = unsafe { instance.get_physical_device_features(physical) };
+    let wanted = [
+        (features.fragment_stores_and_atomics, "fragmentStoresAndAtomics"),
+        (features.vertex_pipeline_stores_and_atomics, "vertexPipelineStoresAndAtomics"),
+    ];
+    match wanted.into_iter().find(|(present, _)| *present == 0) {
+        Some((_, name)) => {
+            let why = format!("--touched: {} lacks {name}, by which shaders count", caps.identity.name);
+            Err(Error::no_device(why).note("--device takes another one; `quincunx devices` lists them"))
+        }
+        None => Ok(()),
     }
 }

@@ -188,6 +188,7 @@ impl Recorded {
             let submitted = Instant::now();
             self.submit(first..end)?;
             let took = submitted.elapsed();
+            self.collect(commands.pieces[first].pass);
             walls[commands.pieces[first].pass] += took.as_nanos() as u64;
             if let Some(estimates) = &self.estimates {
                 estimates.borrow_mut().learn(first..end, took);
@@ -195,6 +196,14 @@ impl Recorded {
             first = end;
         }
         self.times(walls, started.elapsed().as_nanos() as u64, pass_count)
+    }
+
+    /// What a pass touched that has just ended.
+    fn collect(&self, pass: usize) {
+        if let (Some(marks), Some(ended)) = (&self.commands.gpu.marks, self.commands.passes.get(pass)) {
+            marks.collect(&ended.name);
+            self.commands.notes.add_to(marks, pass, &ended.name);
+        }
     }
 
     /// What a run took that has just ended. `walls`: of its passes, where each had submits of its own.

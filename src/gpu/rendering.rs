@@ -1,5 +1,6 @@
 //! Rendering: opened into whole images, of one sample a pixel or several.
 
+use super::marks::shape::Part;
 use super::{Access, Commands, Image};
 use crate::units::Extent;
 use ash::vk;
@@ -110,12 +111,33 @@ impl Commands {
         }
         // SAFETY: the buffer is being recorded; the images are alive and in the layouts that the caller's barriers left.
         unsafe { self.gpu.device.cmd_begin_rendering(self.buffer(), &info) };
+        for color in colors {
+            self.note_attached(color.image, layers, color.clear.is_some(), true);
+        }
+        if let Some((image, clear, access)) = depth {
+            self.note_attached(image, layers, clear.is_some(), access.writes());
+        }
         self.set_window([0, 0], extent);
     }
 
     pub fn end_rendering(&mut self) {
         // SAFETY: opened by `begin_rendering`.
         unsafe { self.gpu.device.cmd_end_rendering(self.buffer()) };
+    }
+
+    /// An attachment is loaded, or cleared, and stored: all of its layers that are drawn into.
+    fn note_attached(&self, image: &Image, layers: Layers, clears: bool, stores: bool) {
+        let drawn = match layers {
+            Layers::First => 0..1,
+            Layers::One(layer) => layer..layer + 1,
+            Layers::All(count) => 0..count,
+        };
+        if !clears {
+            self.note(&image.marked, false, Part::Layers(drawn.clone()));
+        }
+        if clears || stores {
+            self.note(&image.marked, true, Part::Layers(drawn));
+        }
     }
 
     /// A programmer's mistake: rendering begins, and no barrier has brought an attachment there.

@@ -17,6 +17,9 @@ impl Sampler {
         let handle = unsafe { gpu.device.create_sampler(info, None) }
             .map_err(|result| Error::device(format!("creating a sampler: {result}")))?;
         gpu.name(handle, name);
+        if let Some(marks) = &gpu.marks {
+            marks.sampler(handle, info);
+        }
         Ok(Self { gpu: gpu.clone(), handle })
     }
 

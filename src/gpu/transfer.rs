@@ -1,5 +1,6 @@
 //! Transfers inside a recorded frame: filling and copying whole resources. The caller states the barriers.
 
+use super::marks::shape::Part;
 use super::{Access, Buffer, Commands, Image};
 use ash::vk;
 
@@ -9,6 +10,7 @@ impl Commands {
         assert!(target.bytes.is_multiple_of(4), "{}: {} bytes are no words of 4", target.name, target.bytes);
         // SAFETY: the buffer is being recorded, outside rendering; the target outlives the recorded frame.
         unsafe { self.gpu().device.cmd_fill_buffer(self.buffer(), target.handle, 0, target.bytes, word) };
+        self.note(&target.marked, true, Part::All);
     }
 
     /// Copies the whole of `source`, made with TRANSFER_SRC, to the start of `target`, made with TRANSFER_DST.
@@ -18,6 +20,8 @@ impl Commands {
         let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size };
         // SAFETY: as above; the region lies in both.
         unsafe { self.gpu().device.cmd_copy_buffer(self.buffer(), source.handle, target.handle, &[region]) };
+        self.note(&source.marked, false, Part::All);
+        self.note(&target.marked, true, Part::Bytes(0..size));
     }
 
     /// Copies the start of `source`, made with TRANSFER_SRC, into all of `target`: its levels one after the other, finest first,
@@ -46,5 +50,7 @@ impl Commands {
         let (from, to, layout) = (source.handle, target.handle, Access::TransferWrite.layout());
         // SAFETY: as above; the regions lie in both.
         unsafe { self.gpu().device.cmd_copy_buffer_to_image(self.buffer(), from, to, layout, &regions) };
+        self.note(&source.marked, false, Part::Bytes(0..needed));
+        self.note(&target.marked, true, Part::All);
     }
 }

@@ -14,6 +14,7 @@ pub mod refusal;
 pub mod rehearsal;
 mod request;
 pub mod suballocate;
+pub mod touched;
 
 use crate::caps::Caps;
 use crate::error::{Error, Result};

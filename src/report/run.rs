@@ -3,6 +3,7 @@
 
 use super::errors::Errors;
 use super::memory::MemoryReport;
+use super::memory::touched::{TouchedReport, TouchedRow};
 use super::nullable::present;
 use super::spread::Spread;
 use crate::caps::Identity;
@@ -155,7 +156,7 @@ pub struct PassRow {
     /// `host, once`, `device, once` or, of the host's part of each frame, `host`; None of a pass of the device in each.
     #[serde(default, rename = "where", skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
-    /// Bytes that it reads by its own reckoning; None of what ran once.
+    /// Bytes that it reads by its own reckoning, or as it has counted them (`--touched`); None of what ran once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bytes_read: Option<u64>,
     /// The same, written.
@@ -358,6 +359,18 @@ impl Times {
             warmup_frames: u32::from(profile),
             timing_warnings,
         }
+    }
+
+    /// The same with the bytes that passes asked for where a frame has counted them, in place of their own reckoning.
+    pub fn counted(mut self, touched: Option<&TouchedReport>) -> Self {
+        for pass in touched.into_iter().flat_map(|touched| &touched.passes) {
+            let sum = |bytes: fn(&TouchedRow) -> u64| Some(pass.resources.iter().map(bytes).sum());
+            for row in self.passes.iter_mut().filter(|row| row.name == pass.pass && row.place.is_none()) {
+                row.bytes_read = sum(|row| row.asked_read_bytes);
+                row.bytes_written = sum(|row| row.asked_written_bytes);
+            }
+        }
+        self
     }
 }
 

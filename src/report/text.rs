@@ -50,7 +50,11 @@ impl RunReport {
         )?;
         if let (Some(touched), Some(of)) = (sums.touched_bytes, sums.touched_of_bytes) {
             let (touched, of) = (Bytes(touched), Bytes(of));
-            writeln!(text, "  touched: {touched} of {of}, over the resources in which the frame counts")?;
+            let over = match &self.memory.touched {
+                Some(counted) => format!("in pieces of {} B", counted.granule_bytes),
+                None => "over the resources in which the frame counts".to_owned(),
+            };
+            writeln!(text, "  touched: {touched} of {of}, {over}")?;
         }
         if let Some(errors) = &self.errors {
             writeln!(text, "errors against {}", errors.reference)?;

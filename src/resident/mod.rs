@@ -37,6 +37,7 @@ pub use textures::Textures;
 pub use visible::DrawList;
 
 use crate::error::Result;
+use crate::gpu::marks::Slots;
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::structs::{DrawBlock, MaterialBlock};
 use crate::gpu::{Access, AccessSet, Buffer, Gpu, upload};
@@ -103,6 +104,7 @@ struct SetOwner {
     pool: vk::DescriptorPool,
     textures: Arc<Textures>,
     _samplers: Vec<Sampler>,
+    _slots: Vec<Slots>,
 }
 
 /// Draw calls, and the clusters of triangles that they are made of.
@@ -159,10 +161,10 @@ impl SceneGpu {
         let blocks: Vec<MaterialBlock> =
             scene.materials.iter().map(|material| material_blocks::block(scene, material)).collect();
         let materials = sent("scene.materials", bytemuck::cast_slice(&blocks), shaders)?;
-        let MaterialSets { samplers, layout, pool, sets } = MaterialSets::new(gpu, scene, &textures)?;
+        let MaterialSets { samplers, layout, pool, sets, slots } = MaterialSets::new(gpu, scene, &textures)?;
         let mut calls = geometry.calls(scene);
         sort(&mut calls);
-        let owner = SetOwner { gpu: gpu.clone(), layout, pool, textures, _samplers: samplers };
+        let owner = SetOwner { gpu: gpu.clone(), layout, pool, textures, _samplers: samplers, _slots: slots };
         Ok(Self {
             pose: Pose { positions, attributes, draws },
             extended,

@@ -5,6 +5,7 @@
 
 use super::SceneStats;
 use crate::error::{Error, Result};
+use crate::gpu::marks::{self, Slots};
 use crate::gpu::sampler::Sampler;
 use crate::gpu::{Access, AccessSet, Gpu, Image, upload};
 use crate::plan::{Plan, Resources, Sharing};
@@ -82,6 +83,8 @@ pub struct MaterialSets {
     pub layout: vk::DescriptorSetLayout,
     pub pool: vk::DescriptorPool,
     pub sets: Vec<vk::DescriptorSet>,
+    /// One a set, on a device that counts what is touched.
+    pub slots: Vec<Slots>,
 }
 
 impl MaterialSets {
@@ -105,26 +108,33 @@ impl MaterialSets {
         let image_of: HashMap<(usize, ColorSpace), usize> =
             distinct_images(scene).into_iter().enumerate().map(|(index, source)| (source, index)).collect();
         let view_of = |texture: Option<usize>| match texture {
-            None => (images[images.len() - 1].view, samplers[0].handle),
+            None => (&images[images.len() - 1], samplers[0].handle),
             Some(index) => {
                 let texture = &scene.textures[index];
                 let image = image_of[&(texture.image, texture.color_space)];
-                (images[image].view, samplers[sampler_of[&texture.sampler]].handle)
+                (&images[image], samplers[sampler_of[&texture.sampler]].handle)
             }
         };
-        let infos: Vec<[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]> = scene
-            .materials
-            .iter()
-            .map(|material| {
-                TextureSlot::ALL.map(|slot| {
-                    let (view, sampler) = view_of(material.texture(slot));
-                    let layout = Access::FragmentSample.layout();
-                    vk::DescriptorImageInfo::default().image_view(view).sampler(sampler).image_layout(layout)
-                })
-            })
-            .collect();
+        let shown = scene.materials.iter().map(|material| TextureSlot::ALL.map(|slot| view_of(material.texture(slot))));
+        let shown: Vec<[(&Image, vk::Sampler); TEXTURES_PER_MATERIAL]> = shown.collect();
+        let layout = Access::FragmentSample.layout();
+        let info = |(image, sampler): (&Image, vk::Sampler)| {
+            vk::DescriptorImageInfo::default().image_view(image.view).sampler(sampler).image_layout(layout)
+        };
+        let infos: Vec<_> = shown.iter().map(|textures| textures.map(info)).collect();
         let (layout, pool, sets) = material_sets(gpu, &infos)?;
-        Ok(Self { samplers, layout, pool, sets })
+        let mut slots = Vec::new();
+        if let Some(marks) = &gpu.marks {
+            for (set, textures) in sets.iter().zip(&shown) {
+                let own = marks.slots(false)?;
+                for (binding, (image, sampler)) in textures.iter().enumerate() {
+                    image.marked.iter().for_each(|marked| own.set_binding(binding as u32, marked, Some(*sampler)));
+                }
+                own.write_to(&gpu.device, *set);
+                slots.push(own);
+            }
+        }
+        Ok(Self { samplers, layout, pool, sets, slots })
     }
 }
 
@@ -155,21 +165,25 @@ type Sets = (vk::DescriptorSetLayout, vk::DescriptorPool, Vec<vk::DescriptorSet>
 
 fn material_sets(gpu: &Gpu, infos: &[[vk::DescriptorImageInfo; TEXTURES_PER_MATERIAL]]) -> Result<Sets> {
     let kind = vk::DescriptorType::COMBINED_IMAGE_SAMPLER;
+    let readers = vk::ShaderStageFlags::FRAGMENT | vk::ShaderStageFlags::COMPUTE;
     let bindings: Vec<_> = (0..TEXTURES_PER_MATERIAL as u32)
         .map(|binding| {
             vk::DescriptorSetLayoutBinding::default()
                 .binding(binding)
                 .descriptor_type(kind)
                 .descriptor_count(1)
-                .stage_flags(vk::ShaderStageFlags::FRAGMENT | vk::ShaderStageFlags::COMPUTE)
+                .stage_flags(readers)
         })
+        .chain(gpu.marks.as_ref().map(|_| marks::layout_binding(readers)))
         .collect();
     let fail = |result| Error::device(format!("making the descriptor sets of {} materials: {result}", infos.len()));
     let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
     // SAFETY: a live device; the bindings outlive the call.
     let layout = unsafe { gpu.device.create_descriptor_set_layout(&info, None) }.map_err(fail)?;
     let count = infos.len().max(1) as u32;
-    let sizes = [vk::DescriptorPoolSize { ty: kind, descriptor_count: count * TEXTURES_PER_MATERIAL as u32 }];
+    let mut sizes = vec![vk::DescriptorPoolSize { ty: kind, descriptor_count: count * TEXTURES_PER_MATERIAL as u32 }];
+    let marks = vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: count };
+    sizes.extend(gpu.marks.as_ref().map(|_| marks));
     let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
     // SAFETY: a live device.
     let pool = match unsafe { gpu.device.create_descriptor_pool(&info, None) } {

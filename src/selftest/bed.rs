@@ -9,6 +9,7 @@ use crate::gpu::timing::Clock;
 use crate::gpu::validation::Message;
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::memory::Strategy;
+use crate::memory::touched::Touched;
 use crate::picture::Picture;
 use crate::session::{Renderer, Session};
 use crate::settings::Values;
@@ -78,13 +79,13 @@ impl Bed {
         &self.caps
     }
 
-    /// The device, opened again where it was given up or kept its memory otherwise.
+    /// The device, opened again where it was given up, kept its memory otherwise, or did not count what this one counts.
     ///
     /// Errors: it cannot be opened again (exit code 4).
-    pub fn gpu(&mut self, strategy: Strategy) -> Result<Arc<Gpu>> {
-        if strategy != self.request.strategy {
+    pub fn gpu(&mut self, strategy: Strategy, touched: Touched) -> Result<Arc<Gpu>> {
+        if (strategy, touched) != (self.request.strategy, self.request.touched) {
             self.give_up();
-            self.request.strategy = strategy;
+            self.request = DeviceRequest { strategy, touched, ..self.request.clone() };
         }
         if self.gpu.is_none() {
             let again = Gpu::open(&self.request);
@@ -159,8 +160,7 @@ impl Bed {
 
     /// The place as the settings have it: while a shutter is open and with a volume in it, too.
     fn showing(&mut self, place: Place, values: &Values, technique: &str) -> Result<&Session> {
-        let strategy = values.choice("allocation");
-        let gpu = self.gpu(strategy)?;
+        let gpu = self.gpu(values.choice("allocation"), values.choice("touched"))?;
         let of_scene = ["shutter", "volume"].map(|key| values.get(key).unwrap_or("none"));
         let key = (place, of_scene.join(" "));
         if self.session.as_ref().is_none_or(|(of, _)| *of != key) {

@@ -13,6 +13,7 @@ use crate::gpu::recorded::Recorded;
 use crate::gpu::timing::elapsed_ns;
 use crate::gpu::{Commands, Gpu};
 use crate::memory::Strategy;
+use crate::memory::touched::Touched;
 use serde::Serialize;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -101,7 +102,7 @@ pub fn compare(bed: &mut Bed) -> Result<Clocks> {
         clocks.refused = Some("the queue writes no timestamps (timestampValidBits)".to_owned());
         return Ok(clocks);
     }
-    let gpu = bed.gpu(Strategy::default())?;
+    let gpu = bed.gpu(Strategy::default(), Touched::Off)?;
     let stamps = stamps(&gpu)?;
     let moment = || gpu.calibration().map(|calibration| calibration.now()).transpose();
     let (begun, before) = (moment()?, stamped(&stamps)?);

@@ -104,7 +104,11 @@ impl Session {
         aovs: &[String],
         recording: impl Into<Recording>,
     ) -> Result<Renderer> {
-        let recording = Recording { limit: submit_limit(values, &self.gpu.caps), ..recording.into() };
+        let recording = match self.gpu.marks {
+            // What a pass touched is taken when it has ended.
+            Some(_) => Recording { submits: Submits::PerPass, limit: None, ..recording.into() },
+            None => Recording { limit: submit_limit(values, &self.gpu.caps), ..recording.into() },
+        };
         if recording.has_statistics {
             statistics::require(&self.gpu.caps)?;
         }

@@ -17,6 +17,8 @@ use crate::passes::next_run::NextRun;
 use crate::picture::{Aov, Picture};
 use crate::plan::{Plan, Sharing};
 use crate::progress::Stage;
+use crate::report::memory::MemoryTable;
+use crate::report::memory::touched::TouchedReport;
 use crate::resident::SceneGpu;
 use crate::scene::Scene;
 use crate::techniques::parts::InParts;
@@ -65,6 +67,7 @@ impl Renderer {
     ///
     /// Errors: the device fails, memory for reading the sums back (exit code 4); Ctrl-C in the host's part of a run (130).
     pub fn frame(&self) -> Result<FrameTime> {
+        self.gpu.marks.iter().for_each(|marks| marks.begin_frame());
         if let Some(InParts { until_error }) = self.frame.in_parts() {
             return self.frame_in_parts(until_error);
         }
@@ -265,11 +268,15 @@ impl Renderer {
         Ok(counters)
     }
 
-    /// Bytes that the last frame touched, by full name, of the resources of which it counts them.
+    /// `table`, of this renderer, with what the last frame touched: all of it on a device that counts, elsewhere that of which the frame
+    /// keeps count itself.
     ///
     /// Errors: memory for reading counts back (exit code 4).
-    pub fn touched_bytes(&self) -> Result<BTreeMap<String, u64>> {
-        self.frame.touched_bytes(&self.gpu)
+    pub fn touched(&self, table: MemoryTable) -> Result<MemoryTable> {
+        Ok(match &self.gpu.marks {
+            Some(marks) => table.with_touched(TouchedReport::of(marks.granule_bytes(), &marks.touches())),
+            None => table.touched_as(&self.frame.touched_bytes(&self.gpu)?),
+        })
     }
 
     /// One of the last frame's intermediate results, which `Session::renderer` was asked for: others share their bytes

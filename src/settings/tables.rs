@@ -3,6 +3,7 @@
 use super::tree::TREE_GROWTH;
 use super::{Changes, Kind, Setting, Unread, Values};
 use crate::choice::choices;
+use crate::memory::touched::Touched;
 use crate::memory::{Strategy, alias};
 use crate::picture::image_file::ExrPrecision;
 use crate::picture::tonemap::{EXPOSURES_EV, ToneMap};
@@ -154,6 +155,14 @@ pub const COMMON: &[Setting] = &[
         default: "none",
         help: "Most bytes that the memory blocks of one heap may sum up to; an allocation beyond it is refused; none: \
                the heap's size",
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "touched",
+        kind: Kind::Choice(Touched::WORDS),
+        default: "off",
+        help: "Count which bytes each pass reads and writes of each resource: in cache lines of 64 bytes (line), in pages of \
+               4096 bytes (page), or not at all (off); shaders count themselves, which takes much time; the same picture",
         ..Setting::changing(Changes::Nothing)
     },
     Setting {

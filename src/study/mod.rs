@@ -11,10 +11,11 @@ mod trials;
 
 use crate::bvh::LazyBvh;
 use crate::caps::{Caps, HeapBudget};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::gpu::commands::Submits;
 use crate::job::{Job, fail_on_validation};
 use crate::memory::kinds::Kinds;
+use crate::memory::touched::Touched;
 use crate::plan::Requirements;
 use crate::report::memory::MemoryTable;
 use crate::session::Planned;
@@ -42,6 +43,11 @@ pub struct Study {
 /// Errors: impossible settings or a broken scene (exit code 2); a device of these caps lacks what the settings need (3).
 pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
     job.require_read()?;
+    let touched: Touched = job.values.choice("touched");
+    if touched != Touched::Off {
+        let why = format!("--touched {}: a plan touches nothing", touched.name());
+        return Err(Error::request(why).note("without --plan it is counted on a device"));
+    }
     let scene = job.with_texturing(job.load_scene()?, caps);
     let name = scene.name.clone();
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
@@ -77,7 +83,7 @@ pub fn resolved(job: &Job, caps: &Caps) -> Result<BTreeMap<&'static str, String>
     })
 }
 
-/// Every resource of `job` made on its device; no frame is rendered.
+/// Every resource of `job` made on its device; no frame is rendered, except where `--touched` counts one.
 ///
 /// Errors: impossible settings or a broken scene (exit code 2), no device (3), memory (4).
 pub fn made(job: &Job) -> Result<Study> {
@@ -85,7 +91,11 @@ pub fn made(job: &Job) -> Result<Study> {
     let session = job.open_session(&job.device_request(), job.load_scene()?)?;
     let renderer = session.renderer(job.technique, &job.values, &job.aovs, Submits::One)?;
     let snapshot = session.gpu.memory.snapshot();
-    let table = session.memory_table(&renderer, Some(&snapshot))?;
+    let mut table = session.memory_table(&renderer, Some(&snapshot))?;
+    if session.gpu.marks.is_some() {
+        renderer.frame()?;
+        table = renderer.touched(table)?;
+    }
     let device = session.gpu.caps.identity.name.clone();
     let (scene, caps) = (session.scene.name.clone(), session.gpu.caps.clone());
     let driver_heaps = session.gpu.heap_budgets();

@@ -2,6 +2,7 @@
 
 mod budget;
 mod study;
+mod touched;
 
 use crate::support::choices::{words, words_but};
 use crate::support::counted::{begin, counted, counted_device, counter, live_bytes};

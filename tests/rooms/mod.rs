@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The rooms of src/ from the ground up: each may name what lies on lower floors. docs/architecture.md draws them.
 const FLOORS: &[&[&str]] = &[
-    &["choice", "error", "progress", "svg", "units", "user_folder"],
+    &["choice", "error", "progress", "spirv", "svg", "units", "user_folder"],
     &["caps", "interrupt", "page", "whole_file"],
     &["sampling"],
     &["memory", "picture", "volume"],

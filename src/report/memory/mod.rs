@@ -5,17 +5,19 @@ pub mod difference;
 pub mod drawing;
 mod rows;
 mod text;
+pub mod touched;
 pub mod vma;
 
 pub use rows::{ArenaPlace, ArenaRow, MemoryReport, MemoryRow, MemorySums, PassBytes, Waste};
 
 use crate::error::Result;
-use crate::gpu::ImageDescription;
+use crate::gpu::{ImageDescription, marks};
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::ledger::{BlockState, Entry, Snapshot};
 use crate::plan::{Peak, Plan, Planned, PlannedArena, Requirements, Shape, Sharing};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use touched::TouchedReport;
 
 /// The memory of one technique on one scene.
 #[derive(Clone, Debug)]
@@ -26,6 +28,8 @@ pub struct MemoryTable {
     sharing: Sharing,
     /// Where it was made: what the driver was asked for, and each memory block.
     made: Option<(u64, Vec<BlockState>)>,
+    /// None: nobody counted all that is touched.
+    touched: Option<TouchedReport>,
 }
 
 impl MemoryTable {
@@ -49,7 +53,8 @@ impl MemoryTable {
         }
         let kept_bytes = rows[..scene.resources.len()].iter().map(|row| row.bound_bytes).sum();
         let bound: Vec<u64> = rows[scene.resources.len()..].iter().map(|row| row.bound_bytes).collect();
-        for entry in snapshot.iter().flat_map(|snapshot| &snapshot.resources) {
+        let of_frames = |entry: &&Entry| entry.name != marks::NAME;
+        for entry in snapshot.iter().flat_map(|snapshot| &snapshot.resources).filter(of_frames) {
             let index = rows.iter().position(|row| row.name == entry.name).unwrap_or_else(|| {
                 // What no plan knows of is still somebody's.
                 rows.push(unplanned(entry));
@@ -71,6 +76,7 @@ impl MemoryTable {
             passes: passes.collect(),
             sharing,
             made: snapshot.map(|snapshot| (snapshot.memory_block_bytes, snapshot.blocks.clone())),
+            touched: None,
         })
     }
 
@@ -79,6 +85,16 @@ impl MemoryTable {
         for row in &mut self.rows {
             row.touched_bytes = counted.get(&row.name).copied();
         }
+        self
+    }
+
+    /// The same with all that a frame touched, as its shaders counted. What it did not touch at all has 0 bytes.
+    pub fn with_touched(mut self, touched: TouchedReport) -> Self {
+        let counted = touched.by_resource();
+        for row in &mut self.rows {
+            row.touched_bytes = Some(counted.get(&row.name).copied().unwrap_or_default());
+        }
+        self.touched = Some(touched);
         self
     }
 
@@ -141,6 +157,7 @@ impl MemoryTable {
             resources: self.rows.clone(),
             memory_block_bytes: self.made.as_ref().map(|(bytes, _)| *bytes),
             memory_blocks: self.made.as_ref().map(|(_, blocks)| blocks.clone()),
+            touched: self.touched.clone(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! What a report says of memory.
 
+use super::touched::TouchedReport;
 use crate::memory::ledger::BlockState;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -171,4 +172,7 @@ pub struct MemoryReport {
     /// None where nothing was made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub memory_blocks: Option<Vec<BlockState>>,
+    /// None without `--touched`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub touched: Option<TouchedReport>,
 }

@@ -14,6 +14,7 @@ impl MemoryReport {
         self.write_rows(&mut text)
             .and_then(|()| self.write_sums(&mut text))
             .and_then(|()| self.write_passes(&mut text))
+            .and_then(|()| self.touched.as_ref().map_or(Ok(()), |touched| touched.write(&mut text)))
             .expect("writing to a string");
         text
     }

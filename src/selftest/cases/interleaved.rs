@@ -288,4 +288,13 @@ pub const GROUPS: &[Group] = &[
         methods: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")]],
         must: SAME,
     },
+    Group {
+        name: "touched",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Method(&[("touched", "off")]),
+        methods: &[&[("touched", "line")], &[("touched", "page")]],
+        must: SAME,
+    },
 ];

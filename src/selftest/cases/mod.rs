@@ -118,8 +118,8 @@ mod tests {
                         let last = settings.iter().rev().find(|(key, _)| *key == setting.key);
                         last.map_or(setting.default, |(_, text)| *text) == *choice
                     };
-                    // How memory is kept is the device's, whatever is drawn.
-                    let is_device_s = setting.key == "allocation";
+                    // How memory is kept and what is counted is the device's, whatever is drawn.
+                    let is_device_s = ["allocation", "touched"].contains(&setting.key);
                     let tries = |case: &Case| is_device_s || case.group.technique == technique.name();
                     let is_tried = all().filter(tries).any(|case| {
                         let twin = case.twin_settings().filter(|(name, _)| *name == technique.name());

@@ -152,8 +152,8 @@ fn memory_is_an_entry_a_sample_at_worst() {
     let watched = Watched::open("cornell");
     let frame = watched.render(DEEP, &[SIZE, ("spp", "2"), INDIRECT]);
     let entries = frame.measured_counters().unwrap()["shader_invocations"];
-    let touched = frame.touched_bytes().unwrap();
-    assert_eq!(touched.values().sum::<u64>() as f64, (72.0 + 4.0) * entries);
+    let table = frame.touched(watched.session.memory_table(&frame, None).unwrap()).unwrap();
+    assert_eq!(table.sums().touched_bytes.unwrap() as f64, (72.0 + 4.0) * entries);
 }
 
 #[test]

@@ -1,0 +1,162 @@
+//! Bytes that frames touch, as their shaders count them, against what must be touched.
+
+use crate::support::benched::read;
+use crate::support::program::Program;
+use crate::support::skip;
+use serde_json::Value;
+use std::path::Path;
+
+/// Pixels of the pictures.
+const PIXELS: u64 = 64 * 48;
+const SIZE: [&str; 2] = ["--size", "64x48"];
+
+/// Report of a render.
+fn rendered(program: &Program, arguments: &[&str]) -> Value {
+    let files = ["-o", "picture.png", "--report", "report.json", "--quiet"];
+    program.run(&[&["render"], arguments, &files].concat()).fine();
+    serde_json::from_str(&read(program, "report.json")).unwrap()
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap_or_else(|| panic!("no list: {value}"))
+}
+
+fn ends<'a>(rows: &'a [Value], key: &str, end: &str) -> &'a Value {
+    let found = rows.iter().find(|row| row[key].as_str().unwrap().ends_with(end));
+    found.unwrap_or_else(|| panic!("no {end} in {rows:#?}"))
+}
+
+/// A pass's row of a resource, both named by the ends of their names.
+fn row<'a>(report: &'a Value, pass: &str, resource: &str) -> &'a Value {
+    let pass = ends(list(&report["memory"]["touched"]["passes"]), "pass", pass);
+    ends(list(&pass["resources"]), "resource", resource)
+}
+
+/// Bytes that are read, written, asked for by reads, and by writes.
+fn bytes(row: &Value) -> [u64; 4] {
+    ["read_bytes", "written_bytes", "asked_read_bytes", "asked_written_bytes"].map(|key| row[key].as_u64().unwrap())
+}
+
+#[test]
+fn a_pass_over_all_pixels_touches_each_once() {
+    let program = Program::new();
+    let report =
+        rendered(&program, &[&["cornell", "--technique", "deferred", "--touched", "line"], &SIZE[..]].concat());
+    // Position and normal are attachments of four halves, cleared and stored; each thread fetches its texel.
+    for (name, texel_bytes) in [("position", 8), ("normal", 8)] {
+        let all = PIXELS * texel_bytes;
+        assert_eq!(bytes(row(&report, "gbuffer", name)), [0, all, 0, all], "{name}");
+        let [read, written, asked, stored] = bytes(row(&report, "shade", name));
+        assert_eq!([read, written, stored], [all, 0, 0], "{name}");
+        assert_eq!(asked % all, 0, "{name}: a whole number of fetches a pixel");
+    }
+    let all = PIXELS * 16;
+    let [.., written, _, stored] = bytes(row(&report, "shade", "shade.color"));
+    assert_eq!([written, stored], [all, all]);
+    // Every index of a draw is read, once, and every vertex that one names.
+    let scene = &report["scene"];
+    let triangles = scene["triangles"].as_u64().unwrap();
+    let [read, _, asked, _] = bytes(row(&report, "gbuffer", "scene.indices"));
+    assert!(asked % 12 == 0 && asked <= 12 * triangles && read <= asked, "{asked} of {triangles} triangles");
+    let drawn = asked / 12;
+    assert_eq!(report["counters"]["triangles_drawn"].as_f64().unwrap() as u64, drawn);
+    let positions = row(&report, "gbuffer", "scene.positions");
+    assert_eq!(bytes(positions)[2] % 12, 0, "{positions}");
+    assert!(bytes(positions)[2] <= 12 * 3 * drawn, "a vertex is made at most once an index: {positions}");
+}
+
+#[test]
+fn a_frame_that_counts_has_the_same_picture() {
+    let program = Program::new();
+    for technique in [
+        "interleaved_deferred",
+        "inferred_lighting",
+        "deep_shading",
+        "adaptive_interleaved",
+        "interleaved_sampling",
+        "forward",
+    ] {
+        let plain = [&["cornell", "--technique", technique][..], &SIZE].concat();
+        let hash = |more: &[&str]| {
+            let report = rendered(&program, &[&plain[..], more].concat());
+            let touched = report["memory"]["touched"].is_object();
+            (report["image"]["hash"].as_str().unwrap().to_owned(), touched)
+        };
+        let (expected, counts) = hash(&[]);
+        assert!(!counts);
+        for pieces in ["line", "page"] {
+            assert_eq!(hash(&["--touched", pieces]), (expected.clone(), true), "{technique} in {pieces}s");
+        }
+    }
+}
+
+/// What passes read knows how many lights there are.
+#[test]
+fn bytes_that_passes_ask_for_know_the_lights() {
+    let program = Program::new();
+    let asked = |vpls: &str, split: &str| {
+        let settings = ["--vpls", vpls, "--pattern", "2x2", "--split", split, "--touched", "line"];
+        let report = rendered(&program, &[&["cornell"], &SIZE[..], &settings].concat());
+        let lights = row(&report, "shade", "vpls").clone();
+        let passes = list(&report["passes"]);
+        let shade = ends(passes, "name", "shade")["bytes_read"].as_u64().unwrap();
+        let [distinct, _, asked, _] = bytes(&lights);
+        (distinct, asked, shade)
+    };
+    let [few, many] = ["16", "64"].map(|vpls| asked(vpls, "one-pass"));
+    // A light takes 48 bytes, and each is read by some pixel; one that is behind a surface is read in part.
+    assert_eq!((few.0, many.0), (48 * 16, 48 * 64));
+    assert!(many.1 > 2 * few.1 && many.1 <= PIXELS * 48 * 16, "{few:?} {many:?}");
+    assert_eq!(many.2 - many.1, few.2 - few.1, "the rest of the pass does not know them: {few:?} {many:?}");
+    assert_ne!(asked("16", "none").2, few.2, "splits differ");
+}
+
+#[test]
+fn pieces_of_a_page_touch_no_less_than_lines() {
+    let program = Program::new();
+    let of = |pieces: &str| {
+        let settings = ["--technique", "deferred", "--touched", pieces];
+        rendered(&program, &[&["hall:triangles=5000"], &SIZE[..], &settings].concat())
+    };
+    let [lines, pages] = ["line", "page"].map(of);
+    let sum = |report: &Value| report["memory"]["touched_bytes"].as_u64().unwrap();
+    assert!(sum(&lines) < sum(&pages), "{} {}", sum(&lines), sum(&pages));
+    for line in list(&lines["memory"]["touched"]["resources"]) {
+        let page = ends(list(&pages["memory"]["touched"]["resources"]), "resource", line["resource"].as_str().unwrap());
+        assert_eq!(line["asked_read_bytes"], page["asked_read_bytes"], "{line}");
+        assert_eq!(line["bytes"], page["bytes"]);
+        assert!(line["touched_bytes"].as_u64() <= page["touched_bytes"].as_u64(), "{line} {page}");
+        assert!(page["touched_bytes"].as_u64() <= page["bytes"].as_u64(), "{page}");
+    }
+}
+
+/// A picture of 144 pixels looks up a few thousand texels of what levels it needs.
+#[test]
+fn a_small_picture_touches_little_of_large_textures() {
+    let Some(folder) = std::env::var_os("QUINCUNX_SCENES") else { return skip("QUINCUNX_SCENES is not set") };
+    let helmet = Path::new(&folder).join("samples/DamagedHelmet/DamagedHelmet.gltf");
+    let program = Program::new();
+    let arguments = [helmet.to_str().unwrap(), "--technique", "deferred", "--size", "16x9", "--touched", "line"];
+    let report = rendered(&program, &arguments);
+    let rows = list(&report["memory"]["resources"]);
+    let textures: Vec<_> = rows.iter().filter(|row| row["group"] == "scene.textures").collect();
+    let sum = |key: &str| textures.iter().map(|row| row[key].as_u64().unwrap()).sum::<u64>();
+    let [touched, of] = ["touched_bytes", "bytes"].map(sum);
+    assert!(0 < touched && 100 * touched < of, "{touched} of {of}");
+    // The finest level has 2048 texels a side, and a pixel covers hundreds of them.
+    let largest = list(&report["memory"]["touched"]["resources"]);
+    let levels = largest.iter().filter_map(|row| row["levels"].as_array()).find(|levels| levels.len() > 8).unwrap();
+    assert_eq!(levels[0][1], 0, "{levels:?}");
+    assert!(levels.iter().any(|level| level[1].as_u64() > Some(0)));
+}
+
+#[test]
+fn what_cannot_be_counted_is_refused() {
+    let program = Program::new();
+    let ran = program.run(&["memory", "cornell", "--plan", "--touched", "line"]);
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("--touched line: a plan touches nothing"), "{}", ran.err);
+    let ran = program.run(&["bench", "frame", "cornell", "--touched", "page"]);
+    assert_eq!(ran.code, 2);
+    assert!(ran.err.contains("--touched page: frames that count are slow"), "{}", ran.err);
+}
