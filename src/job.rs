@@ -8,7 +8,7 @@ use crate::gpu::recorded::FrameTime;
 use crate::gpu::validation::Log;
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::interrupt;
-use crate::memory::ledger::Snapshot;
+use crate::memory::{ledger::Snapshot, trace::Recorder};
 use crate::picture::image_file::{ExrPrecision, WriteOptions, write};
 use crate::picture::tonemap::exposure_for;
 use crate::picture::visible::visible;
@@ -55,6 +55,8 @@ pub struct Job {
     pub command: Vec<String>,
     /// Files of presets that some of the values are from, for the report.
     pub presets: Vec<String>,
+    /// Keeps what its device's memory is asked for.
+    pub recorder: Option<Arc<Recorder>>,
 }
 
 /// What a run leaves in memory.
@@ -123,6 +125,7 @@ impl Job {
             validate: false,
             command: Vec::new(),
             presets: Vec::new(),
+            recorder: None,
         }
     }
 
@@ -344,18 +347,17 @@ impl Job {
 
     /// The device that the request names.
     pub fn device_request(&self) -> DeviceRequest {
-        let (strategy, touched) = (self.values.choice("allocation"), self.values.choice("touched"));
-        let budget_bytes = self.values.bytes("memory-budget");
         DeviceRequest {
             selector: self.device.clone(),
             validate: self.validate,
-            strategy,
-            budget_bytes,
-            touched,
+            touched: self.values.choice("touched"),
+            strategy: self.values.choice("allocation"),
+            budget_bytes: self.values.bytes("memory-budget"),
+            block_bytes: self.values.unless_auto("memory-block", Values::power_of_bytes),
+            recorder: self.recorder.clone(),
             // The layer's checks of what shaders read see nothing where the device mends it; and it may cost time.
             robust: !self.validate && !self.profile,
-            hook: None,
-            pretense: None,
+            ..DeviceRequest::default()
         }
     }
 

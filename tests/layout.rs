@@ -295,11 +295,12 @@ fn passes_and_lights_know_no_technique() {
     }
 }
 
+/// Allocators of others allocate too, where they are built to be measured.
 #[test]
 fn memory_is_allocated_in_one_room() {
     let outside: Vec<String> = mentions("", &[".allocate_memory(", ".free_memory("])
         .into_iter()
-        .filter(|line| !line.starts_with("src/memory/"))
+        .filter(|line| !line.starts_with("src/memory/") && !line.starts_with("src/bench/allocate/rivals.rs"))
         .collect();
     assert_eq!(outside, [] as [&str; 0]);
 }

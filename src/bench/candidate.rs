@@ -171,7 +171,7 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
         let why = format!("--touched {}: frames that count are slow, and their times say nothing", touched.name());
         return Err(Error::request(why).note("`render` and `memory` count"));
     }
-    for key in ["allocation", "memory-budget", "texture-limit", "texture-gutters", "anisotropy"] {
+    for key in ["allocation", "memory-block", "memory-budget", "texture-limit", "texture-gutters", "anisotropy"] {
         let text = values.text(key);
         if text != job.values.text(key) {
             return Err(Error::request(format!(

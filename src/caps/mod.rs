@@ -34,6 +34,13 @@ impl Caps {
         heap_bytes.min(asked.unwrap_or(u64::MAX))
     }
 
+    /// The same with heaps that nothing fills: those of a known driver are those of the machine that it was measured on.
+    pub fn with_endless_heaps(&self) -> Self {
+        let mut endless = self.clone();
+        endless.heaps.iter_mut().for_each(|heap| heap.bytes = u64::MAX);
+        endless
+    }
+
     /// How a plan without the device rounds: as measured, or not at all where that was not done.
     pub fn rules(&self) -> Cow<'_, LayoutRules> {
         match &self.layout {

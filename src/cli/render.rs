@@ -6,13 +6,16 @@ use crate::cli::output::{print, print_text};
 use crate::continuation::Continuation;
 use crate::error::{Error, Result};
 use crate::job::{Job, require_folder};
+use crate::memory::trace::Trace;
 use crate::progress::say;
+use crate::report::run::RunReport;
 use crate::report::trace;
 use crate::sequence::Frames;
 use crate::whole_file::write_whole;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::io::Write;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The verb with its arguments.
 pub fn command(listed: &TechniqueSelection) -> Command {
@@ -40,6 +43,9 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                     .action(ArgAction::Append)
                     .help("Also write these stages of the technique: as layers of an EXR, or as pictures FILE.NAME.png beside a PNG"),
             )
+            .arg(path("record-allocations", "FILE.jsonl").help(
+                "File to write to what is asked of the device's memory and comes back, in order, for `bench allocate`",
+            ))
             .arg(path("continue", "FILE.exr").conflicts_with("frames").help(
                 "Add samples to an earlier picture of path_traced, of the same scene, size and settings, up to --spp or \
                  --until-error; the result is the picture of a single run",
@@ -73,10 +79,14 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     trace.map_or(Ok(()), |path| require_folder(path))?;
     job.profile = matches.get_flag("profile") || trace.is_some();
     job.statistics = matches.get_flag("statistics");
+    let record = matches.get_one::<PathBuf>("record-allocations");
+    record.map_or(Ok(()), |path| require_folder(path))?;
+    job.recorder = record.map(|_| Arc::default());
     if let Some(frames) = frames_args::asked(matches)? {
         return run_sequence(&job, &frames, matches);
     }
     let outcome = job.run()?;
+    write_allocations(&job, matches, &outcome.report)?;
     if let Some(path) = trace {
         write_whole(path, |out| writeln!(out, "{}", trace::document(&outcome.report)))?;
     }
@@ -88,6 +98,14 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     outcome.gates
 }
 
+/// What the device of the job was asked for, where --record-allocations names a file.
+fn write_allocations(job: &Job, matches: &ArgMatches, report: &RunReport) -> Result<()> {
+    let (Some(recorder), Some(path)) = (&job.recorder, matches.get_one::<PathBuf>("record-allocations")) else {
+        return Ok(());
+    };
+    Trace::write(path, &report.device.identity.name, &recorder.events())
+}
+
 /// Renders each frame, with a line for each on standard error, and prints how many are written.
 fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> {
     let mut done = 0;
@@ -96,6 +114,9 @@ fn run_sequence(job: &Job, frames: &Frames, matches: &ArgMatches) -> Result<()> 
         say(format!("frame {frame}, {done} of {}: wrote {}", frames.count(), outcome.path.display()));
         outcome.notes.iter().for_each(|note| say(format!("frame {frame}: note: {note}")));
     })?;
+    if let Some(report) = sequence.reports.first() {
+        write_allocations(job, matches, report)?;
+    }
     if matches.get_flag("json") {
         print(&format!("{:#}\n", sequence.json()))?;
     } else {

@@ -6,7 +6,9 @@ use super::pipeline_store::PipelineStore;
 use super::{probe, validation};
 use crate::caps::{Caps, HeapBudget, Identity};
 use crate::error::{Error, Result};
+use crate::memory::pool::Rules;
 use crate::memory::touched::Touched;
+use crate::memory::trace::Recorder;
 use crate::memory::{Memory, Strategy};
 use ash::vk;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -30,6 +32,10 @@ pub struct DeviceRequest {
     pub strategy: Strategy,
     /// What memory blocks in one heap may sum up to; None: the heap's size.
     pub budget_bytes: Option<u64>,
+    /// Greatest size of a shared memory block, a power of two; None: `memory::pool::SHARED_BLOCK_BYTES`.
+    pub block_bytes: Option<u64>,
+    /// Keeps what is asked of memory and comes back.
+    pub recorder: Option<Arc<Recorder>>,
     /// Reads and writes of shaders beyond a buffer's end hit nothing else (robustBufferAccess). Without, such a mistake may
     /// lose the device; what looks for mistakes and what is timed does without.
     pub robust: bool,
@@ -355,8 +361,8 @@ impl Gpu {
         let structures = structures.then(|| ash::khr::acceleration_structure::Device::new(&instance, &device));
         let has_both_clocks = extension_names.contains(&ash::ext::calibrated_timestamps::NAME);
         let calibration = has_both_clocks.then(|| Calibration::of(&entry, &instance, physical, &device)).flatten();
-        let memory =
-            Arc::new(Memory::new(device.clone(), names.clone(), &caps, request.strategy, request.budget_bytes));
+        let rules = Rules::new(&caps, request.strategy, request.budget_bytes, request.block_bytes);
+        let memory = Arc::new(Memory::new(device.clone(), names.clone(), &caps, rules, request.recorder.clone()));
         let marks = granule_bytes.map(|bytes| Marks::new(&device, &memory, bytes)).transpose();
         // Nothing else holds the device yet.
         let marks = marks.inspect_err(|_| unsafe { device.destroy_device(None) })?;
@@ -409,6 +415,12 @@ impl Gpu {
             // SAFETY: as above.
             None => unsafe { names.cmd_end_debug_utils_label(buffer) },
         }
+    }
+
+    /// What it was opened from, for allocators of others.
+    #[cfg(feature = "rivals")]
+    pub fn chosen(&self) -> (&ash::Instance, vk::PhysicalDevice) {
+        (&self.instance, self.physical)
     }
 
     /// What the driver itself says of its heaps now; None: it says nothing (VK_EXT_memory_budget).

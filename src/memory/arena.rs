@@ -40,6 +40,7 @@ impl Memory {
             memory_type: type_index,
             parts_bytes: 0,
         });
+        self.record_take(entry, &ask, name);
         state.asks.insert(entry, ask);
         Ok(Arc::new(Arena { memory: self.clone(), entry, ask, usage, reason: choice.reason, made }))
     }

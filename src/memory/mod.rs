@@ -15,6 +15,7 @@ pub mod rehearsal;
 mod request;
 pub mod suballocate;
 pub mod touched;
+pub mod trace;
 
 use crate::caps::Caps;
 use crate::error::{Error, Result};
@@ -29,6 +30,7 @@ pub use request::{Request, Strategy, Tiling};
 use std::collections::BTreeMap;
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard};
+use trace::Recorder;
 
 /// A range in a memory block; returns itself when dropped.
 pub struct Allocation {
@@ -75,6 +77,8 @@ pub struct Memory {
     device: ash::Device,
     names: Option<ash::ext::debug_utils::Device>,
     kinds: Kinds,
+    /// None: nobody wants to know.
+    recorder: Option<Arc<Recorder>>,
     state: Mutex<State>,
 }
 
@@ -96,23 +100,23 @@ struct Made {
 }
 
 impl Memory {
-    /// `names`: where memory blocks get the names that tools show. `budget_bytes`: what memory blocks in one heap may sum
-    /// up to; None: the heap's size.
+    /// `names`: where memory blocks get the names that tools show. `rules`: those of `caps`. `recorder`: keeps what is asked
+    /// for and comes back.
     pub fn new(
         device: ash::Device,
         names: Option<ash::ext::debug_utils::Device>,
         caps: &Caps,
-        strategy: Strategy,
-        budget_bytes: Option<u64>,
+        rules: Rules,
+        recorder: Option<Arc<Recorder>>,
     ) -> Self {
         let state = State {
-            pool: Pool::new(Rules::new(caps, strategy, budget_bytes)),
+            pool: Pool::new(rules),
             blocks: BTreeMap::new(),
             ledger: Ledger::default(),
             asks: BTreeMap::new(),
             refusal: None,
         };
-        Self { device, names, kinds: Kinds::new(caps), state: Mutex::new(state) }
+        Self { device, names, kinds: Kinds::new(caps), recorder, state: Mutex::new(state) }
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
@@ -149,6 +153,7 @@ impl Memory {
             reason: choice.reason,
             arena: None,
         });
+        self.record_take(entry, &ask, name);
         state.asks.insert(entry, ask);
         let source = Source::Range { block: place.block, bytes: ask.bytes };
         Ok(Allocation { memory: self.clone(), entry, source, handle, offset: place.offset, mapped })
@@ -177,6 +182,18 @@ impl Memory {
         }
         let block = &state.blocks[&place.block];
         Ok(Made { place, handle: block.handle, mapped: block.mapped_at(place.offset) })
+    }
+
+    fn record_take(&self, entry: u64, ask: &Ask, name: &str) {
+        if let Some(recorder) = &self.recorder {
+            recorder.take(entry, ask, name);
+        }
+    }
+
+    fn record_give(&self, entry: u64) {
+        if let Some(recorder) = &self.recorder {
+            recorder.give(entry);
+        }
     }
 
     fn give_back(&self, state: &mut State, block: u32, offset: u64, bytes: u64) {
@@ -256,7 +273,7 @@ fn refused(ledger: &Ledger, pool: &Pool, ask: &Ask, name: &str, usage: Use, misf
             "{what}: the device makes at most {most} memory blocks (maxMemoryAllocationCount), and that many \
              exist already"
         ))
-        .note("--allocation linear and tlsf put several resources into one"),
+        .note("--allocation linear, tlsf and buddy put several resources into one"),
         Misfit::Spent { limit_bytes, held_bytes, is_budget } => {
             let limit = if is_budget { "the budget" } else { "the heap" };
             let spent = if held_bytes > 0 { "spent" } else { "too small for it" };
@@ -276,6 +293,7 @@ impl Drop for Allocation {
         // A part holds no bytes of its own; its arena goes after this lock, when the fields do.
         if let Source::Range { block, bytes } = self.source {
             state.asks.remove(&self.entry);
+            self.memory.record_give(self.entry);
             self.memory.give_back(&mut state, block, self.offset, bytes);
         }
     }
@@ -286,6 +304,7 @@ impl Drop for Arena {
         let mut state = self.memory.state();
         state.ledger.leave_arena(self.entry);
         state.asks.remove(&self.entry);
+        self.memory.record_give(self.entry);
         self.memory.give_back(&mut state, self.made.place.block, self.made.place.offset, self.ask.bytes);
     }
 }

@@ -8,21 +8,21 @@ use super::suballocate::Suballocate;
 use super::{Strategy, Tiling};
 use crate::caps::Caps;
 
-/// Greatest size of a shared memory block.
+/// Greatest size of a shared memory block (`--memory-block auto`).
 pub const SHARED_BLOCK_BYTES: u64 = 16 << 20;
-/// Resources of at least this size get a memory block of their own. Of shared ones a resource may leave as much unused at
-/// the end as it is large: a texture of 1024 x 1024 with its levels is a little more than a third of a shared block, and
-/// two in each left a third of all that was allocated unused.
-const OWN_BLOCK_BYTES: u64 = SHARED_BLOCK_BYTES / 4;
+/// Resources of at least this part of the greatest shared memory block get one of their own. Of shared ones a resource may
+/// leave as much unused at the end as it is large: a texture of 1024 x 1024 with its levels is a little more than a third of
+/// a shared block, and two in each left a third of all that was allocated unused.
+const OWN_BLOCK_PART: u64 = 4;
 /// Size of the first shared memory block of its kind.
 const FIRST_BLOCK_BYTES: u64 = 1 << 20;
 
 /// Size of a new shared memory block beside `sibling_count` others of its kind, for a resource of `bytes`, where a heap or
-/// a budget has `left_bytes`. Each is twice as large as the one before, so that a small scene is not held in large,
+/// a budget has `left_bytes` and no shared one is larger than `most_bytes`. Each is twice as large as the one before, so that a small scene is not held in large,
 /// nearly empty blocks; and at most an eighth of what is left, so that a few half-empty ones do not spend a small budget.
-fn shared_block_bytes(sibling_count: usize, bytes: u64, left_bytes: u64) -> u64 {
+fn shared_block_bytes(sibling_count: usize, bytes: u64, left_bytes: u64, most_bytes: u64) -> u64 {
     let grown = FIRST_BLOCK_BYTES << sibling_count.min(16);
-    let wanted = grown.max((4 * bytes).next_power_of_two()).min(SHARED_BLOCK_BYTES);
+    let wanted = grown.max((4 * bytes).next_power_of_two()).min(most_bytes);
     (left_bytes / 8).checked_ilog2().map_or(0, |power| 1 << power).min(wanted)
 }
 
@@ -60,10 +60,17 @@ pub enum Misfit {
     Spent { limit_bytes: u64, held_bytes: u64, is_budget: bool },
 }
 
+/// What cuts a new memory block of so many bytes.
+pub type Cut = fn(u64) -> Box<dyn Suballocate>;
+
 /// Limits that a pool keeps.
 #[derive(Clone, Debug)]
 pub struct Rules {
     strategy: Strategy,
+    /// What cuts shared memory blocks; None: the strategy.
+    cut: Option<Cut>,
+    /// Greatest size of a shared memory block, a power of two.
+    block_bytes: u64,
     /// For each heap; None: its size alone.
     budget_bytes: Option<u64>,
     heap_bytes: Vec<u64>,
@@ -73,10 +80,13 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// `budget_bytes`: what memory blocks in one heap may sum up to; None: the heap's size.
-    pub fn new(caps: &Caps, strategy: Strategy, budget_bytes: Option<u64>) -> Self {
+    /// `budget_bytes`: what memory blocks in one heap may sum up to; None: the heap's size. `block_bytes`: the greatest size
+    /// of a shared memory block, a power of two; None: `SHARED_BLOCK_BYTES`.
+    pub fn new(caps: &Caps, strategy: Strategy, budget_bytes: Option<u64>, block_bytes: Option<u64>) -> Self {
         Self {
             strategy,
+            cut: None,
+            block_bytes: block_bytes.unwrap_or(SHARED_BLOCK_BYTES),
             budget_bytes,
             heap_bytes: caps.heaps.iter().map(|heap| heap.bytes).collect(),
             heap_of_type: caps.memory_types.iter().map(|kind| kind.heap as usize).collect(),
@@ -85,12 +95,20 @@ impl Rules {
         }
     }
 
+    /// Shared memory blocks are cut by another's ranges.
+    #[cfg(feature = "rivals")]
+    pub fn cut_by(self, cut: Cut) -> Self {
+        Self { cut: Some(cut), ..self }
+    }
+
     /// One memory type in one heap, which is the only limit.
     #[cfg(test)]
     pub fn of_one_heap(strategy: Strategy, heap_bytes: u64) -> Self {
         let (heap_bytes, heap_of_type) = (vec![heap_bytes], vec![0]);
         Self {
             strategy,
+            cut: None,
+            block_bytes: SHARED_BLOCK_BYTES,
             budget_bytes: None,
             heap_bytes,
             heap_of_type,
@@ -98,6 +116,17 @@ impl Rules {
             max_allocation_count: u32::MAX,
         }
     }
+}
+
+/// Bytes of memory blocks in which nothing lives and that nothing can take now, by why.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unusable {
+    /// Live ranges were rounded up by so much.
+    pub padding_bytes: u64,
+    /// Left out to align ranges.
+    pub gap_bytes: u64,
+    /// Came back, and are taken again only when their memory block is empty.
+    pub lost_bytes: u64,
 }
 
 /// A memory block's numbers.
@@ -143,7 +172,8 @@ impl Pool {
         if ask.bytes > self.rules.max_allocation_bytes {
             return Err(Misfit::TooLarge { most_bytes: self.rules.max_allocation_bytes });
         }
-        let is_shared = !ask.alone && self.rules.strategy.shares_blocks() && ask.bytes < OWN_BLOCK_BYTES;
+        let is_shared =
+            !ask.alone && self.rules.strategy.shares_blocks() && ask.bytes < self.rules.block_bytes / OWN_BLOCK_PART;
         if is_shared && let Some(place) = self.join(ask) {
             return Ok(place);
         }
@@ -152,7 +182,7 @@ impl Pool {
         let limit_bytes = self.rules.budget_bytes.map_or(heap_bytes, |budget| budget.min(heap_bytes));
         let held_bytes = self.held_bytes[heap];
         let left = limit_bytes.saturating_sub(held_bytes);
-        let shared_bytes = shared_block_bytes(self.sibling_count(ask), ask.bytes, left);
+        let shared_bytes = shared_block_bytes(self.sibling_count(ask), ask.bytes, left, self.rules.block_bytes);
         let is_shared = is_shared && ask.bytes < shared_bytes / 2;
         let bytes = if is_shared { shared_bytes } else { ask.bytes };
         if bytes > left {
@@ -162,8 +192,11 @@ impl Pool {
         if self.blocks.iter().flatten().count() >= most as usize {
             return Err(Misfit::TooMany { most });
         }
-        let strategy = if is_shared { self.rules.strategy } else { Strategy::Dedicated };
-        let mut ranges = strategy.ranges(bytes);
+        let mut ranges = match self.rules.cut {
+            _ if !is_shared => Strategy::Dedicated.ranges(bytes),
+            None => self.rules.strategy.ranges(bytes),
+            Some(cut) => cut(bytes),
+        };
         let offset = ranges.take(ask.bytes, ask.alignment).expect("an empty block takes what is not larger");
         let Ask { type_index, mapped, tiling, .. } = *ask;
         let block = Ranges { type_index, mapped, tiling, bytes, is_shared, ranges };
@@ -222,6 +255,16 @@ impl Pool {
         Some(block_bytes)
     }
 
+    /// The sum of all memory blocks.
+    pub fn unusable(&self) -> Unusable {
+        let blocks = self.blocks.iter().flatten();
+        blocks.fold(Unusable::default(), |sum, Ranges { ranges, .. }| Unusable {
+            padding_bytes: sum.padding_bytes + ranges.padding_bytes(),
+            gap_bytes: sum.gap_bytes + ranges.gap_bytes(),
+            lost_bytes: sum.lost_bytes + ranges.lost_bytes(),
+        })
+    }
+
     /// Every memory block as it is now.
     pub fn states(&self) -> Vec<BlockState> {
         let state = |(index, slot): (usize, &Option<Ranges>)| {
@@ -255,6 +298,8 @@ mod tests {
         // Type 0 lies in heap 0, types 1 and 2 in heap 1.
         Rules {
             strategy,
+            cut: None,
+            block_bytes: SHARED_BLOCK_BYTES,
             budget_bytes,
             heap_bytes: vec![256 * MIB, 64 * MIB],
             heap_of_type: vec![0, 1, 1],
@@ -350,20 +395,26 @@ mod tests {
             assert_eq!(place(MIB), Ok(None), "the shared block has room");
             assert_eq!(place(7 * MIB), Ok(Some(7 * MIB)));
             assert_eq!(place(10 * MIB), Ok(Some(10 * MIB)));
-            let spent = Misfit::Spent { limit_bytes: 20 * MIB, held_bytes: 19 * MIB, is_budget: true };
-            assert_eq!(place(3 * MIB), Err(spent));
+            let spent = |held: u64| Misfit::Spent { limit_bytes: 20 * MIB, held_bytes: held * MIB, is_budget: true };
+            assert_eq!(place(3 * MIB), Err(spent(19)));
             assert_eq!(place(MIB), Ok(Some(MIB)), "to the last byte");
-            assert_eq!(place(100), Ok(None));
+            // What lies behind the first resource, the second one's power of two has not left to others.
+            let last = if strategy == Strategy::Buddy { Err(spent(20)) } else { Ok(None) };
+            assert_eq!(place(100), last);
             // The other heap has a limit of its own.
             assert!(pool.place(&Ask { type_index: 1, ..ask(3 * MIB) }).is_ok());
         }
         assert_eq!(
-            [1 << 40, 128 * MIB, 127 * MIB, 8, 7, 0].map(|left| shared_block_bytes(4, 1, left)),
+            [1 << 40, 128 * MIB, 127 * MIB, 8, 7, 0].map(|left| shared_block_bytes(4, 1, left, 16 * MIB)),
             [16 * MIB, 16 * MIB, 8 * MIB, 1, 0, 0]
         );
         // The first of its kind is small, the fifth is full-grown; a resource takes at most a quarter of a new one.
-        assert_eq!([0, 1, 4, 9].map(|siblings| shared_block_bytes(siblings, 1, 1 << 40) / MIB), [1, 2, 16, 16]);
-        assert_eq!(shared_block_bytes(0, 3 * MIB, 1 << 40), 16 * MIB);
+        assert_eq!(
+            [0, 1, 4, 9].map(|siblings| shared_block_bytes(siblings, 1, 1 << 40, 16 * MIB) / MIB),
+            [1, 2, 16, 16]
+        );
+        assert_eq!(shared_block_bytes(0, 3 * MIB, 1 << 40, 16 * MIB), 16 * MIB);
+        assert_eq!([0, 9].map(|siblings| shared_block_bytes(siblings, 1, 1 << 40, MIB / 4)), [MIB / 4; 2]);
     }
 
     /// Textures of any one size, many of them, leave little of what is allocated unused.
@@ -376,12 +427,29 @@ mod tests {
                 for _ in 0..200 {
                     pool.place(&Ask { tiling: Tiling::Optimal, ..ask(bytes) }).unwrap();
                 }
-                let (used, held) = (200 * bytes, pool.held_bytes(0));
+                let is_rounded = strategy == Strategy::Buddy && bytes < SHARED_BLOCK_BYTES / OWN_BLOCK_PART;
+                let (used, held) =
+                    (200 * if is_rounded { bytes.next_power_of_two() } else { bytes }, pool.held_bytes(0));
                 assert!(
                     held <= used / 4 * 5 + SHARED_BLOCK_BYTES,
                     "{strategy:?}: {held} for {used} in parts of {bytes}"
                 );
             }
+        }
+    }
+
+    /// `--memory-block`: how large shared memory blocks become, and from which size on a resource has one of its own.
+    #[test]
+    fn shared_memory_blocks_are_as_large_as_they_may_be() {
+        for (block, count, own) in [(MIB / 4, 16, MIB / 16), (MIB, 4, MIB / 4), (64 * MIB, 3, 16 * MIB)] {
+            let mut pool = Pool::new(Rules { block_bytes: block, ..Rules::of_one_heap(Strategy::Tlsf, 1 << 40) });
+            for _ in 0..64 {
+                pool.place(&ask(MIB / 16 - 256)).unwrap();
+            }
+            // 1 + 2 + 4 MiB hold the 4 MiB where blocks may grow.
+            let sizes: Vec<u64> = pool.states().iter().map(|state| state.bytes).collect();
+            assert_eq!((sizes.len(), *sizes.iter().max().unwrap()), (count, block.min(4 * MIB)), "{sizes:?}");
+            assert_eq!(pool.place(&ask(own)).unwrap().new_block_bytes, Some(own));
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::choice::choices;
 use crate::memory::kinds::Use;
-use crate::memory::suballocate::{Dedicated, Linear, Suballocate, Tlsf};
+use crate::memory::suballocate::{Buddy, Dedicated, Linear, Suballocate, Tlsf};
 use ash::vk;
 
 choices! {
@@ -16,6 +16,8 @@ choices! {
         "dedicated" => Dedicated,
         /// Ranges in shared memory blocks wherever there is room; what returns is taken again.
         "tlsf" => Tlsf,
+        /// Halves of halves of shared memory blocks; each range takes a power of two.
+        "buddy" => Buddy,
     }
 }
 
@@ -31,6 +33,7 @@ impl Strategy {
             Self::Linear => Box::new(Linear::new(bytes)),
             Self::Dedicated => Box::new(Dedicated::new(bytes)),
             Self::Tlsf => Box::new(Tlsf::new(bytes)),
+            Self::Buddy => Box::new(Buddy::new(bytes)),
         }
     }
 }

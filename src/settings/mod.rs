@@ -5,6 +5,7 @@
 
 mod forward;
 mod optics;
+mod parse;
 pub mod readers;
 pub mod scalar;
 mod shadow_maps;
@@ -19,6 +20,7 @@ pub use optics::{
     APERTURE, FOCUS, LIGHT_RADIUS, MEDIUM, MOTION_INTERVAL, MOTION_VECTORS, SHUTTER, STEREO, STEREO_EYES, StereoEyes,
     earlier_s, exposure_s, light_radius_m,
 };
+pub use parse::{parse_color, parse_sides};
 pub use shadow_maps::{
     MAPPED_DIRECT_SHADOW, MapDrawing, MapFilter, SHADOW_BIAS_M, SHADOW_CASTERS, SHADOW_MAPS, SHADOW_SLOPE_BIAS,
 };
@@ -35,6 +37,7 @@ use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::units::{Bytes, Extent};
 use glam::Vec3;
+use parse::{parse_bytes, parse_length, parse_numbers, parse_numbers_or_none, parse_pair};
 use std::collections::BTreeMap;
 
 /// The word for a value that the program chooses, of settings with `Setting::auto`.
@@ -66,6 +69,11 @@ pub enum Kind {
     Length,
     /// `512MiB`, `2GiB`, plain bytes, or `none`.
     Bytes,
+    /// The same, a power of two in the range.
+    PowerOfBytes {
+        min: u64,
+        max: u64,
+    },
     /// Three numbers `R,G,B` of at least 0, or one for all three.
     Color,
     /// One number for each part, with commas between.
@@ -174,6 +182,7 @@ impl Setting {
             Kind::Bytes => {
                 "512MiB, 2GiB and the like (B, KiB, MiB, GiB, TiB; without a unit: bytes), or none".to_owned()
             }
+            Kind::PowerOfBytes { min, max } => format!("a power of two of {} to {}", Bytes(min), Bytes(max)),
             Kind::Color => "R,G,B or one number, each at least 0".to_owned(),
             Kind::Parts(parts) => range_of_parts(parts),
             Kind::PartsOrNone(parts) => format!("{}, or none", range_of_parts(parts)),
@@ -198,6 +207,9 @@ impl Setting {
             Kind::Sides { min, max } => parse_sides(text).is_some_and(|sides| in_range(sides, min, max)),
             Kind::Length => parse_length(text, 1.0).is_some_and(|length| length > 0.0),
             Kind::Bytes => parse_bytes(text).is_some(),
+            Kind::PowerOfBytes { min, max } => {
+                Bytes::parse(text).is_some_and(|bytes| bytes.0.is_power_of_two() && (min..=max).contains(&bytes.0))
+            }
             Kind::Color => parse_color(text).is_some(),
             Kind::Parts(parts) => parse_numbers(text).is_some_and(|numbers| are_parts(&numbers, parts)),
             Kind::PartsOrNone(parts) => parse_numbers_or_none(text)
@@ -227,58 +239,6 @@ fn range_of_parts(parts: &[Part]) -> String {
 fn are_parts(numbers: &[f64], parts: &[Part]) -> bool {
     let mut pairs = numbers.iter().zip(parts);
     numbers.len() == parts.len() && pairs.all(|(number, part)| (part.min..=part.max).contains(number))
-}
-
-fn parse_pair(text: &str) -> Option<[u32; 2]> {
-    let (first, second) = text.split_once('x')?;
-    Some([first.parse().ok()?, second.parse().ok()?])
-}
-
-/// `NxM`, or `N` for both.
-pub fn parse_sides(text: &str) -> Option<[u32; 2]> {
-    match text.parse() {
-        Ok(side) => Some([side; 2]),
-        Err(_) => parse_pair(text),
-    }
-}
-
-fn parse_length(text: &str, diagonal: f64) -> Option<f64> {
-    let value = match text.strip_suffix('%') {
-        Some(percent) => percent.parse::<f64>().ok()? / 100.0 * diagonal,
-        None => text.parse().ok()?,
-    };
-    value.is_finite().then_some(value)
-}
-
-/// Some(None) is `none`; a budget of no bytes is none that anything fits into.
-fn parse_bytes(text: &str) -> Option<Option<u64>> {
-    match text {
-        "none" => Some(None),
-        text => Bytes::parse(text).filter(|bytes| bytes.0 > 0).map(|bytes| Some(bytes.0)),
-    }
-}
-
-fn parse_numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',').map(|number| number.parse().ok()).collect()
-}
-
-/// Some(None) is `none`; else any count of numbers.
-fn parse_numbers_or_none(text: &str) -> Option<Option<Vec<f64>>> {
-    match text {
-        "none" => Some(None),
-        text => parse_numbers(text).map(Some),
-    }
-}
-
-/// Three numbers, or one for all three, each finite and at least 0.
-pub fn parse_color(text: &str) -> Option<Vec3> {
-    let numbers: Vec<f32> = text.split(',').map(|part| part.parse().ok()).collect::<Option<_>>()?;
-    let color = match numbers[..] {
-        [all] => Vec3::splat(all),
-        [r, g, b] => Vec3::new(r, g, b),
-        _ => return None,
-    };
-    (color.is_finite() && color.cmpge(Vec3::ZERO).all()).then_some(color)
 }
 
 /// Checked values of some settings, by key.
@@ -337,6 +297,11 @@ impl Values {
 
     pub fn pair(&self, key: &str) -> [u32; 2] {
         self.parsed(key, parse_pair)
+    }
+
+    /// Bytes of a `Kind::PowerOfBytes` setting.
+    pub fn power_of_bytes(&self, key: &str) -> u64 {
+        self.parsed(key, |text| Some(Bytes::parse(text)?.0))
     }
 
     /// Both sides of a `Kind::Sides` setting.
@@ -435,6 +400,7 @@ mod tests {
             (Kind::Choice(&["on", "off"]), &["", "ON", "maybe"]),
             (Kind::Length, &["", "%", "-1", "0", "nan", "1e999"]),
             (Kind::Bytes, &["", "0", "-1", "1.5", "64MB", "MiB", "64 M", "inf", "nanMiB", "99999999TiB", "None"]),
+            (Kind::PowerOfBytes { min: 4, max: 1 << 20 }, &["", "0", "2", "3MiB", "2MiB", "1048577", "none", "1MB"]),
             (
                 Kind::PartsOrNone(&[Part { word: "A", min: 0.0, max: 2.0 }, Part { word: "B", min: -1.0, max: 1.0 }]),
                 &["", "1", "1,", "1,1,1", "3,0", "0,-2", "nan,0", "None", "0 0"],
@@ -457,6 +423,7 @@ mod tests {
             (Kind::Number { min: 0.5, max: 9.0 }, "auto or 0.5 to 9"),
             (Kind::Pair { min: 1, max: 9 }, "auto or NxM, both 1 to 9"),
             (Kind::Choice(&["on", "off"]), "auto|on|off"),
+            (Kind::PowerOfBytes { min: 4096, max: 1 << 20 }, "auto or a power of two of 4.00 KiB to 1.00 MiB"),
         ] {
             let row = Setting { auto: true, default: "auto", ..setting(kind) };
             assert_eq!(row.range(), range);
@@ -486,6 +453,9 @@ mod tests {
         assert_eq!(values.bytes("memory-budget"), None);
         values.set(&budget, "1.5GiB").unwrap();
         assert_eq!(values.bytes("memory-budget"), Some(3 << 29));
+        let block = setting(Kind::PowerOfBytes { min: 1 << 20, max: 1 << 26 });
+        values.set(&block, "16MiB").unwrap();
+        assert_eq!(values.power_of_bytes(block.key), 1 << 24);
         let text = values.set(&budget, "64MB").unwrap_err().to_string();
         assert!(text.contains("--memory-budget 64MB: it must be 512MiB") && text.contains("KiB, MiB, GiB"), "{text}");
     }

@@ -124,8 +124,17 @@ pub const COMMON: &[Setting] = &[
         kind: Kind::Choice(Strategy::WORDS),
         default: "linear",
         help: "How memory is allocated for resources: as ranges one after the other in shared memory blocks (linear), \
-               as one memory block for each (dedicated), or as ranges in shared memory blocks wherever there is room \
-               (tlsf)",
+               as one memory block for each (dedicated), as ranges in shared memory blocks wherever there is room (tlsf), \
+               or as halves of halves of them, each a power of two of bytes (buddy)",
+        ..Setting::changing(Changes::Nothing)
+    },
+    Setting {
+        key: "memory-block",
+        kind: Kind::PowerOfBytes { min: 64 << 10, max: 1 << 30 },
+        auto: true,
+        default: "auto",
+        help: "Greatest size of a memory block that resources share; the first ones are smaller, and what takes a quarter \
+               of it or more has a memory block of its own; auto: 16MiB",
         ..Setting::changing(Changes::Nothing)
     },
     Setting {

@@ -1,5 +1,4 @@
-//! A plan placed as a device places it, in its order and under its strategy. Heaps do not count: those of a known driver are those of
-//! the machine that it was measured on.
+//! A plan placed as a device places it, in its order and under its strategy. Heaps do not count.
 
 use crate::error::Result;
 use crate::gpu::upload;
@@ -9,6 +8,7 @@ use crate::memory::pool::Rules;
 use crate::memory::rehearsal::Rehearsal;
 use crate::memory::{Request, Tiling};
 use crate::plan::{Plan, Planned, Requirement, Shape};
+use crate::settings::Values;
 use crate::study::driver::{Driver, Plans};
 use ash::vk;
 
@@ -27,10 +27,11 @@ pub enum Copies {
 pub fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64, copies: Copies) -> Result<u64> {
     let strategy = job.values.choice("allocation");
     let Driver { caps, requirements } = driver;
-    let mut endless = caps.clone();
-    endless.heaps.iter_mut().for_each(|heap| heap.bytes = u64::MAX);
+    let endless = caps.with_endless_heaps();
     let kinds = Kinds::new(caps);
-    let mut rehearsal = Rehearsal::new(Rules::new(&endless, strategy, Some(budget_bytes)), &kinds);
+    let block_bytes = job.values.unless_auto("memory-block", Values::power_of_bytes);
+    let rules = Rules::new(&endless, strategy, Some(budget_bytes), block_bytes);
+    let mut rehearsal = Rehearsal::new(rules, &kinds);
     let Plans { scene, frame, sharing, .. } = plans;
     let own = |planned: &Planned, shape: &Shape, name: &str, rehearse: &mut dyn FnMut(&Request<'_>) -> Result<()>| {
         let tiling = if let Shape::Image(_) = shape { Tiling::Optimal } else { Tiling::Linear };

@@ -171,7 +171,7 @@ fn sum_of(report: &Value, key: &str) -> u64 {
 #[test]
 fn every_allocation_gives_the_same_picture_and_says_how_its_memory_blocks_are_filled() {
     let program = Program::new();
-    let reports = ["linear", "dedicated", "tlsf"]
+    let reports = ["linear", "dedicated", "tlsf", "buddy"]
         .map(|strategy| program.run(&small(&["--allocation", strategy, "--json", "-o", "a.png"])).fine().json());
     for report in &reports {
         assert_eq!(report["image"]["hash"], reports[0]["image"]["hash"]);

@@ -118,7 +118,7 @@ fn what_shares_bytes_is_drawn_at_one_height_in_other_passes() {
 #[test]
 fn memory_blocks_are_drawn_and_written_in_the_words_of_vma() {
     let program = Program::new();
-    for allocation in ["tlsf", "dedicated"] {
+    for allocation in ["tlsf", "dedicated", "buddy"] {
         let memory = &written(&program, &["--allocation", allocation])["memory"];
         let blocks = list(&memory["memory_blocks"]);
         let drawn = rectangles(&read(&program, &format!("out/memory-{NAME}.blocks.svg")));

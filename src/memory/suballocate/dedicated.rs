@@ -42,4 +42,8 @@ impl Suballocate for Dedicated {
     fn largest_free_bytes(&self) -> u64 {
         if self.used_bytes > 0 { 0 } else { self.size_bytes }
     }
+
+    fn lost_bytes(&self) -> u64 {
+        self.free_bytes() - self.largest_free_bytes()
+    }
 }

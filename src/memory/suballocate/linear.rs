@@ -9,11 +9,13 @@ pub struct Linear {
     next_byte: u64,
     live_count: u32,
     used_bytes: u64,
+    /// Left out to align ranges since the block was empty.
+    gap_bytes: u64,
 }
 
 impl Linear {
     pub fn new(size_bytes: u64) -> Self {
-        Self { size_bytes, next_byte: 0, live_count: 0, used_bytes: 0 }
+        Self { size_bytes, next_byte: 0, live_count: 0, used_bytes: 0, gap_bytes: 0 }
     }
 }
 
@@ -24,6 +26,7 @@ impl Suballocate for Linear {
         if end > self.size_bytes {
             return None;
         }
+        self.gap_bytes += offset - self.next_byte;
         self.next_byte = end;
         self.live_count += 1;
         self.used_bytes += bytes;
@@ -37,7 +40,7 @@ impl Suballocate for Linear {
         self.used_bytes -= bytes;
         let is_empty = self.live_count == 0;
         if is_empty {
-            self.next_byte = 0;
+            (self.next_byte, self.gap_bytes) = (0, 0);
         }
         is_empty
     }
@@ -54,6 +57,14 @@ impl Suballocate for Linear {
     fn largest_free_bytes(&self) -> u64 {
         self.size_bytes - self.next_byte
     }
+
+    fn gap_bytes(&self) -> u64 {
+        self.gap_bytes
+    }
+
+    fn lost_bytes(&self) -> u64 {
+        self.next_byte - self.used_bytes - self.gap_bytes
+    }
 }
 
 #[cfg(test)]
@@ -63,11 +74,13 @@ mod tests {
     #[test]
     fn holes_are_out_of_reach_until_the_block_is_empty() {
         let mut linear = Linear::new(64);
-        assert_eq!((linear.take(16, 1), linear.take(16, 16)), (Some(0), Some(16)));
-        assert!(!linear.give_back(0, 16));
+        assert_eq!((linear.take(10, 1), linear.take(16, 16)), (Some(0), Some(16)));
+        assert!(!linear.give_back(0, 10));
         assert_eq!((linear.free_bytes(), linear.largest_free_bytes()), (48, 32));
+        assert_eq!((linear.gap_bytes(), linear.lost_bytes()), (6, 10));
         assert_eq!(linear.take(48, 1), None);
         assert!(linear.give_back(16, 16));
+        assert_eq!((linear.gap_bytes(), linear.lost_bytes()), (0, 0));
         assert_eq!(linear.take(48, 1), Some(0));
     }
 }

@@ -285,7 +285,7 @@ pub const GROUPS: &[Group] = &[
         place: CORNELL,
         common: &[VPLS],
         twin: Twin::Method(&[("allocation", "linear")]),
-        methods: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")]],
+        methods: &[&[("allocation", "dedicated")], &[("allocation", "tlsf")], &[("allocation", "buddy")]],
         must: SAME,
     },
     Group {

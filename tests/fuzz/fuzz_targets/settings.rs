@@ -39,6 +39,10 @@ fn read_back(values: &Values, setting: &Setting) {
         Kind::Sides { min, max } => assert!(values.sides(key).iter().all(|side| (min..=max).contains(side))),
         Kind::Length => assert!(values.length(key, 1.0) >= 0.0),
         Kind::Bytes => assert!(values.bytes(key).is_none_or(|bytes| bytes > 0)),
+        Kind::PowerOfBytes { min, max } => {
+            let bytes = values.power_of_bytes(key);
+            assert!(bytes.is_power_of_two() && (min..=max).contains(&bytes));
+        }
         Kind::Color => assert!(values.color(key).is_finite()),
         Kind::Words(words) => assert!(values.text(key).split(',').all(|word| words.contains(&word))),
         Kind::Parts(parts) if parts.len() == 2 => drop(values.numbers::<2>(key)),
