@@ -4,6 +4,7 @@
 //! A B A B, so that drift of the machine falls on all of them; ratios are of the same round, and to the baseline of the
 //! same group. Rows are written when their group is done.
 
+pub mod allocate;
 pub mod best;
 pub mod candidate;
 pub mod copy;

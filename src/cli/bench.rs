@@ -2,7 +2,10 @@
 
 use super::listed::TechniqueSelection;
 use super::output;
-use super::{bench_device, bench_file, bench_merge, frames_args, job_args, locality, progress, rays, reference_args};
+use super::{
+    bench_allocate, bench_device, bench_file, bench_merge, frames_args, job_args, locality, progress, rays,
+    reference_args,
+};
 use crate::bench::candidate::TECHNIQUE;
 use crate::bench::fail_if::Condition;
 use crate::bench::group::MOST_VARIANTS;
@@ -43,6 +46,7 @@ pub fn command(listed: &TechniqueSelection) -> Command {
         .subcommand(rays::command())
         .subcommand(locality::command())
         .subcommand(bench_device::command())
+        .subcommand(bench_allocate::command())
         .subcommand(bench_merge::command())
         .subcommand(bench_file::command())
 }
@@ -146,6 +150,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     match name {
         rays::NAME => return rays::run(matches),
         bench_device::NAME => return bench_device::run(matches),
+        bench_allocate::NAME => return bench_allocate::run(matches, argv),
         locality::NAME => return locality::run(matches, argv),
         bench_merge::NAME => return bench_merge::run(matches, argv),
         bench_file::NAME => return run_file(matches),

@@ -1,6 +1,7 @@
 //! The command line: one file per verb. Parse, run, print; the library does the rest.
 
 pub mod bench;
+mod bench_allocate;
 mod bench_device;
 mod bench_file;
 mod bench_merge;

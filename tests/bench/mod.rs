@@ -1,5 +1,6 @@
 //! `bench` from outside: rows with their keys, what is skipped, what is resumed. Never how long anything takes.
 
+mod allocate;
 mod device;
 mod file;
 mod frames;
