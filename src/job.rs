@@ -23,7 +23,7 @@ use crate::settings::written::{SettingValue, WrittenSettings, written};
 use crate::settings::{Gutters, Values, earlier_s, exposure_s, raw_volume_size, readers, volume_name};
 use crate::techniques::{self, Technique, settings_of, stages, timed};
 use crate::volume::{self, Volume, VolumeRequest};
-use crate::whole_file::write_whole;
+use crate::whole_file::{require_folder, write_whole};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -480,18 +480,6 @@ pub fn fail_on_validation(log: Option<&Log>) -> Result<()> {
             Err(Error::gate(format!("--validate: {count} messages, the first is {}", first.id)).note(&first.text))
         }
     }
-}
-
-/// Errors: the folder of an output does not exist (exit code 2); found before a picture is made, not after.
-pub(crate) fn require_folder(path: &Path) -> Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if folder.is_dir() {
-        return Ok(());
-    }
-    Err(Error::request(format!("{}: the folder {} does not exist", path.display(), folder.display())))
 }
 
 fn default_path(scene: &Scene, technique: &dyn Technique) -> PathBuf {

@@ -83,6 +83,18 @@ pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T> {
     })
 }
 
+/// Errors: the folder of an output does not exist (exit code 2); found before a picture is made, not after.
+pub fn require_folder(path: &Path) -> Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Error::request(format!("{}: the folder {} does not exist", path.display(), folder.display())))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ use crate::support::shading_space::without_shading_space;
 use crate::support::watched::watched_device;
 use ash::vk;
 use quincunx::gpu::DeviceRequest;
-use quincunx::gpu::device::DeviceHook;
+use quincunx::gpu::request::DeviceHook;
 use quincunx::selftest::{self, Outcome, Request, Verdict, document};
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;

@@ -67,7 +67,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
         only: matches.get_many::<String>("only").into_iter().flatten().cloned().collect(),
     };
     let file = matches.get_one::<PathBuf>("output");
-    file.map_or(Ok(()), |file| crate::job::require_folder(file))?;
+    file.map_or(Ok(()), |file| crate::whole_file::require_folder(file))?;
     let mut printed = Ok(());
     let outcome = selftest::run(&request, &mut |tried| {
         if !is_json && printed.is_ok() {

@@ -5,12 +5,11 @@ mod drawn;
 mod plot;
 
 use crate::error::{Error, Result};
-use crate::job::require_folder;
 use crate::picture::Picture;
 use crate::picture::image_file::{self, WriteOptions};
 use crate::sampling::periodogram::{Periodogram, Ring};
 use crate::units::Extent;
-use crate::whole_file::write_whole;
+use crate::whole_file::{require_folder, write_whole};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use serde_json::{Value, json};
 use std::io::Write;
