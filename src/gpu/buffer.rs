@@ -93,11 +93,18 @@ impl Buffer {
     pub fn address(&self) -> u64 {
         let info = vk::BufferDeviceAddressInfo::default().buffer(self.handle);
         // SAFETY: a live buffer with memory, of a live device with the feature.
-        let address = unsafe { self.gpu.device.get_buffer_device_address(&info) };
-        if let (Some(marks), Some(marked)) = (&self.gpu.marks, &self.marked) {
-            marks.at_address(marked, address);
+        unsafe { self.gpu.device.get_buffer_device_address(&info) }
+    }
+
+    /// The same, for shaders that will read and write there.
+    ///
+    /// Errors: what they touch there could not be counted, and is to be (exit code 2).
+    pub fn address_for_shaders(&self) -> Result<u64> {
+        let address = self.address();
+        match (&self.gpu.marks, &self.marked) {
+            (Some(marks), Some(marked)) => marks.at_address(marked, address).map(|()| address),
+            _ => Ok(address),
         }
-        address
     }
 
     /// The host's view of the buffer. Panics where the buffer was not made for `Upload` or `Readback`.

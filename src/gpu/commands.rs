@@ -183,6 +183,7 @@ impl Commands {
             self.make_timestamps()?;
         }
         self.passes.push(RecordedPass { name: name.to_owned(), traffic });
+        self.notes.begin_pass();
         if index > 0 && (self.submits == Submits::PerPass || self.limit.is_some()) {
             self.end_buffer()?;
             self.next_piece()?;
@@ -196,7 +197,8 @@ impl Commands {
         }
         record(self).map_err(|error| error.within(name))?;
         if self.gpu.marks.is_some() {
-            self.wait_for_all();
+            // Marks are counted without barriers between them, and the host reads them when the pass has ended.
+            self.wait_until(vk::PipelineStageFlags2::HOST, vk::AccessFlags2::HOST_READ);
         }
         if let Some(statistics) = &self.statistics {
             statistics.end(self.buffer(), index);
@@ -261,12 +263,17 @@ impl Commands {
 
     /// All work that comes waits for all that was, and sees what it wrote.
     pub fn wait_for_all(&mut self) {
+        self.wait_until(vk::PipelineStageFlags2::NONE, vk::AccessFlags2::NONE);
+    }
+
+    /// The same for work at more `stages`, with their `accesses`: those of the host.
+    fn wait_until(&mut self, stages: vk::PipelineStageFlags2, accesses: vk::AccessFlags2) {
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
         let barrier = vk::MemoryBarrier2::default()
             .src_stage_mask(all)
             .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-            .dst_stage_mask(all)
-            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE);
+            .dst_stage_mask(all | stages)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE | accesses);
         let barriers = [barrier];
         let info = vk::DependencyInfo::default().memory_barriers(&barriers);
         // SAFETY: the buffer is being recorded, outside rendering.
@@ -334,8 +341,8 @@ impl Commands {
     pub(super) fn bind_set(&self, point: vk::PipelineBindPoint, interface: &Interface, set: Option<vk::DescriptorSet>) {
         let Some(set) = set else { return };
         if let Some(slots) = self.descriptors.slots(set) {
-            for (name, pass) in slots.unknown().iter().zip(std::iter::repeat(self.passes.len().saturating_sub(1))) {
-                self.notes.add(pass, Noted::Unknown(name.clone()));
+            if let Some(pass) = self.passes.len().checked_sub(1) {
+                slots.unknown().iter().for_each(|name| self.notes.add(pass, Noted::Unknown(name.clone())));
             }
             self.notes.bind_slots(slots.clone());
         }

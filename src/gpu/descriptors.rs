@@ -105,6 +105,7 @@ impl Descriptors {
                 Bound::Sampled(image, sampler, _) => (&image.marked, Some(*sampler)),
                 Bound::Structure(structure) => {
                     slots.add_unknown(&structure.buffer.name);
+                    structure.beneath.iter().for_each(|name| slots.add_unknown(name));
                     continue;
                 }
             };

@@ -33,7 +33,9 @@ impl Commands {
     pub unsafe fn draw_indexed(&self, indices: Range<u32>, vertex_offset: i32, instances: Range<u32>) {
         let (index_count, instance_count) = (indices.len() as u32, instances.len() as u32);
         let [begin, end] = [indices.start, indices.end].map(|index| INDEX_BYTES * u64::from(index));
-        self.note(&self.notes.indices(), false, Part::Bytes(begin..end));
+        for _ in instances.clone() {
+            self.note(&self.notes.indices(), false, Part::Bytes(begin..end));
+        }
         let device = &self.gpu().device;
         // SAFETY: the buffer is being recorded inside rendering; as to the indices, the caller vouches for them.
         unsafe {

@@ -216,10 +216,10 @@ impl Image {
         // SAFETY: a live device; the info has no pointers.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(|result| Error::device(format!("creating image {name} ({extent}, {format:?}): {result}")))?;
-        let bound = Self::bind(gpu, name, group, description, handle, berth);
+        // First, for what is bound has views, which nobody else would destroy.
         let marked =
             gpu.marks.as_ref().map(|marks| marks.image(name, description.texels(marks.granule_bytes()))).transpose();
-        match bound.and_then(|bound| Ok((bound, marked?))) {
+        match marked.and_then(|marked| Ok((Self::bind(gpu, name, group, description, handle, berth)?, marked))) {
             Ok(((allocation, Views { view, storage, sampled, layers }), marked)) => {
                 gpu.name(handle, name);
                 gpu.name(view, name);

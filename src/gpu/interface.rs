@@ -106,7 +106,11 @@ fn require_bindable(shader: &Shader, gpu: &Gpu) -> Result<()> {
         ),
     ] {
         let of_kind = shader.bindings.iter().filter(|binding| kinds.contains(&binding.kind));
-        let count: u32 = of_kind.map(|binding| binding.count).sum();
+        let own: u32 = of_kind.map(|binding| binding.count).sum();
+        let counts = gpu.marks.is_some() && kinds.contains(&BindingKind::StorageBuffer);
+        // Each set has the marks too.
+        let sets = 1 + shader.bindings.iter().map(|binding| binding.set).max().unwrap_or(0);
+        let count = own + if counts { sets } else { 0 };
         if count > most {
             let (label, device) = (shader.label(), &gpu.caps.identity.name);
             let why =

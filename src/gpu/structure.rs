@@ -139,6 +139,8 @@ pub struct Structure {
     pub(super) over: Over,
     /// The buffer that barriers name.
     pub buffer: Buffer,
+    /// Name of the structure that its instances are of.
+    pub beneath: Option<String>,
 }
 
 impl Structure {
@@ -153,7 +155,7 @@ impl Structure {
         let handle = unsafe { gpu.structures().create_acceleration_structure(&info, None) }
             .map_err(|result| Error::device(format!("creating structure {}: {result}", buffer.name)))?;
         gpu.name(handle, &buffer.name);
-        Ok(Self { gpu: gpu.clone(), handle, over, buffer })
+        Ok(Self { gpu: gpu.clone(), handle, over, buffer, beneath: None })
     }
 
     /// Writes an instance of it, where it was built, as a top structure takes it. `bytes`: `INSTANCE_BYTES`.

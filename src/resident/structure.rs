@@ -55,7 +55,7 @@ impl SceneStructure {
         let scratch_bytes = over.map(|over| over.sizes(gpu).scratch_bytes);
         let [bottom, top] = buffers;
         let bottom = Structure::new(gpu, bottom, over[0])?;
-        let top = Structure::new(gpu, top, over[1])?;
+        let mut top = Structure::new(gpu, top, over[1])?;
         let transient = |what: &str, bytes, flags, usage| {
             Buffer::new(gpu, &format!("{}.{what}", bottom.buffer.name), upload::GROUP, bytes, flags, usage)
         };
@@ -83,6 +83,7 @@ impl SceneStructure {
             top.buffer.from(Access::StructureWrite).to(Access::ComputeTrace),
         ]);
         cmd.finish()?.run()?;
+        top.beneath = Some(bottom.buffer.name.clone());
         Ok(Self { top, _bottom: bottom })
     }
 

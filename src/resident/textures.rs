@@ -122,17 +122,14 @@ impl MaterialSets {
             vk::DescriptorImageInfo::default().image_view(image.view).sampler(sampler).image_layout(layout)
         };
         let infos: Vec<_> = shown.iter().map(|textures| textures.map(info)).collect();
+        let slots =
+            shown.iter().flat_map(|_| &gpu.marks).map(|marks| marks.slots(false)).collect::<Result<Vec<_>>>()?;
         let (layout, pool, sets) = material_sets(gpu, &infos)?;
-        let mut slots = Vec::new();
-        if let Some(marks) = &gpu.marks {
-            for (set, textures) in sets.iter().zip(&shown) {
-                let own = marks.slots(false)?;
-                for (binding, (image, sampler)) in textures.iter().enumerate() {
-                    image.marked.iter().for_each(|marked| own.set_binding(binding as u32, marked, Some(*sampler)));
-                }
-                own.write_to(&gpu.device, *set);
-                slots.push(own);
+        for ((set, textures), slots) in sets.iter().zip(&shown).zip(&slots) {
+            for (binding, (image, sampler)) in textures.iter().enumerate() {
+                image.marked.iter().for_each(|marked| slots.set_binding(binding as u32, marked, Some(*sampler)));
             }
+            slots.write_to(&gpu.device, *set);
         }
         Ok(Self { samplers, layout, pool, sets, slots })
     }

@@ -2,7 +2,7 @@
 
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{BuiltIn, Decoration, Op, StorageClass, Word};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Types, constants and variables of a module, with what decorates them.
 #[derive(Default)]
@@ -15,6 +15,8 @@ pub struct Layout {
     sets: HashMap<Word, u32>,
     locations: HashMap<Word, u32>,
     built_ins: HashMap<Word, BuiltIn>,
+    /// Matrices whose columns are not in one piece.
+    row_major: HashSet<(Word, u32)>,
 }
 
 /// A step into a type: what lies there, and how far from the beginning.
@@ -73,6 +75,12 @@ impl Layout {
                         _ => continue,
                     };
                     map.insert((*id, *member), *value);
+                }
+                (
+                    Op::MemberDecorate,
+                    [Operand::IdRef(id), Operand::LiteralBit32(member), Operand::Decoration(Decoration::RowMajor)],
+                ) => {
+                    layout.row_major.insert((*id, *member));
                 }
                 _ => {}
             }
@@ -133,6 +141,9 @@ impl Layout {
                 let to = self.operand(ty, member as usize)?.id_ref_any()?;
                 let offset = *self.offsets.get(&(ty, member))?;
                 let matrix_stride = self.matrix_strides.get(&(ty, member)).copied();
+                if self.row_major.contains(&(ty, member)) {
+                    return None;
+                }
                 Some(Step { ty: to, matrix_stride, distance: Distance::Bytes(offset) })
             }
             Op::TypeArray | Op::TypeRuntimeArray => {

@@ -199,7 +199,7 @@ struct Tree {
 /// What holds the boxes.
 enum Walked {
     Nodes(Buffer),
-    Structure(SceneStructure),
+    Structure(Box<SceneStructure>),
 }
 
 impl Tree {
@@ -231,7 +231,7 @@ impl Tree {
         let built = SceneStructure::build(gpu, bvh, over, buffers)?;
         let pipeline = ComputePipeline::new(gpu, variant(COMP_VARIANTS, &["query"]), &[])?;
         let size = Size { node_count: 0, node_bytes, stack: "", stack_entries: 0 };
-        Ok(Self { pipeline, nodes: Walked::Structure(built), triangles: triangles.clone(), size })
+        Ok(Self { pipeline, nodes: Walked::Structure(Box::new(built)), triangles: triangles.clone(), size })
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a frame touched, pass by pass, as the marks of its passes say.
 
 use super::shape::{Part, Shape};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Reads, or writes, of one resource: granules with a mark, and bytes asked for, each access anew.
 #[derive(Clone, Debug, Default)]
@@ -23,14 +23,14 @@ pub struct Touches {
 pub struct PassTouches {
     pub pass: String,
     pub resources: BTreeMap<String, Touches>,
+    /// Resources that it touched in a way that nobody counts.
+    pub unknown: BTreeSet<String>,
 }
 
 /// A frame's passes.
 #[derive(Clone, Debug, Default)]
 pub struct FrameTouches {
     pub passes: Vec<PassTouches>,
-    /// Resources that a pass touched in a way that nobody counts, with the pass.
-    pub unknown: Vec<(String, String)>,
 }
 
 impl Accesses {
@@ -78,7 +78,11 @@ impl FrameTouches {
     /// The pass of this name, which comes last where there was none.
     pub fn pass(&mut self, name: &str) -> &mut PassTouches {
         let place = self.passes.iter().position(|known| known.pass == name).unwrap_or_else(|| {
-            self.passes.push(PassTouches { pass: name.to_owned(), resources: BTreeMap::new() });
+            self.passes.push(PassTouches {
+                pass: name.to_owned(),
+                resources: BTreeMap::new(),
+                unknown: BTreeSet::new(),
+            });
             self.passes.len() - 1
         });
         &mut self.passes[place]
@@ -96,6 +100,8 @@ impl FrameTouches {
 
 impl PassTouches {
     pub fn of(&mut self, name: &str, shape: Shape) -> &mut Touches {
-        self.resources.entry(name.to_owned()).or_insert_with(|| Touches::none(shape))
+        let touches = self.resources.entry(name.to_owned()).or_insert_with(|| Touches::none(shape));
+        assert_eq!(touches.shape, shape, "{name}: a frame has two resources of one name");
+        touches
     }
 }

@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 use crate::memory::kinds::Use;
 use crate::memory::suballocate::{Suballocate, Tlsf};
 use crate::memory::{Allocation, Memory, Request, Tiling};
-use crate::spirv::counting::{self, Attribute, Counters, FIRST_STREAM};
+use crate::spirv::counting::{self, Attribute, Counters, FIRST_BINDING, FIRST_STREAM};
 use crate::units::Bytes;
 use ash::vk;
 use ash::vk::Handle;
@@ -246,16 +246,33 @@ impl Marks {
     }
 
     /// Shaders will reach this buffer by its address.
-    pub fn at_address(&self, marked: &Marked, address: u64) {
+    ///
+    /// Errors: it shares bytes with another one, so that an address does not say which it is; it is longer than what shaders count
+    /// in; or there are too many (exit code 2).
+    pub fn at_address(&self, marked: &Marked, address: u64) -> Result<()> {
         let mut state = self.state();
-        if state.addresses.iter().any(|(known, ..)| *known == address) {
-            return;
+        let bytes = marked.shape.bytes();
+        let Marked { name, record, .. } = marked;
+        let meets = |known: &&(u64, u64, u64)| known.0 < address + bytes && address < known.0 + known.1;
+        match state.addresses.iter().find(meets) {
+            Some((.., known)) if known == record => return Ok(()),
+            Some((.., known)) => {
+                let other = &state.live[known].0;
+                let why =
+                    format!("--touched: {name} and {other} share bytes, and shaders reach both by their addresses");
+                return Err(Error::request(why).note("--alias off keeps them apart"));
+            }
+            None => {}
         }
-        assert!(state.addresses.len() < MARK_MOST_ADDRESSES as usize, "{}: one address too many", marked.name);
-        // What lies behind 4 GiB is not counted: shaders count in 32 bits.
-        let bytes = marked.shape.bytes().min(u64::from(u32::MAX));
-        state.addresses.push((address, bytes, marked.record));
+        if bytes > u64::from(u32::MAX) || state.addresses.len() >= MARK_MOST_ADDRESSES as usize {
+            return Err(Error::request(format!(
+                "--touched: {name} ({}) is reached by its address: that is counted for up to {MARK_MOST_ADDRESSES} buffers of less than 4 GiB",
+                Bytes(bytes)
+            )));
+        }
+        state.addresses.push((address, bytes, *record));
         state.write_addresses();
+        Ok(())
     }
 
     pub fn sampler(&self, handle: vk::Sampler, info: &vk::SamplerCreateInfo<'_>) {
@@ -281,8 +298,8 @@ impl Marks {
         let bytes = slots_bytes(count);
         let mut state = self.state();
         let begin = state.slots.take(bytes, SLOTS_ALIGNMENT_BYTES).ok_or_else(|| {
-            Error::memory("--touched: the frame binds more descriptor sets than can be counted")
-                .note("fewer lights with shadow maps would need fewer")
+            Error::memory("--touched: materials and passes bind more descriptor sets than can be counted")
+                .note(format!("there is room for about {}", SLOTS_BYTES / slots_bytes(FIRST_STREAM)))
         })?;
         let mut words = vec![0; (bytes / WORD_BYTES) as usize];
         words[0] = word_of(begin);
@@ -350,7 +367,7 @@ impl Marks {
 
     /// A pass has touched a resource in a way that nobody counts.
     pub(super) fn add_unknown(&self, pass: &str, name: &str) {
-        self.state().touches.unknown.push((pass.to_owned(), name.to_owned()));
+        self.state().touches.pass(pass).unknown.insert(name.to_owned());
     }
 
     /// What was counted since the frame began.
@@ -423,7 +440,7 @@ impl Slots {
 
     /// A binding of the set leads to this resource. `sampler`: through which.
     pub fn set_binding(&self, binding: u32, marked: &Marked, sampler: Option<vk::Sampler>) {
-        self.write(binding + 1, marked, sampler);
+        self.write(FIRST_BINDING + binding, marked, sampler);
     }
 
     /// A stream of the draws with this set.
@@ -452,7 +469,7 @@ impl Slots {
         };
         let block = match marked.shape {
             Shape::Buffer { bytes, granule_bytes } => MarkSlotBlock {
-                // As much as a shader can bind.
+                // Shaders count in 32 bits; what they bind is shorter, and what they reach by its address is refused where it is longer.
                 bytes: bytes.min(u64::from(u32::MAX)) as u32,
                 granule: granule_bytes.ilog2(),
                 ..common

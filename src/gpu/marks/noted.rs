@@ -43,6 +43,13 @@ impl Notes {
         self.0.borrow_mut().noted.push((pass, noted));
     }
 
+    /// Nothing is bound yet.
+    pub fn begin_pass(&self) {
+        let mut open = self.0.borrow_mut();
+        (open.slots, open.indices) = (None, None);
+        open.streams.clear();
+    }
+
     /// Draws that follow go by these slots.
     pub fn bind_slots(&self, slots: Arc<Slots>) {
         let mut open = self.0.borrow_mut();

@@ -88,11 +88,13 @@ impl MemoryTable {
         self
     }
 
-    /// The same with all that a frame touched, as its shaders counted. What it did not touch at all has 0 bytes.
+    /// The same with all that a frame touched, as its shaders counted: 0 bytes of what it did not touch at all, and None of what
+    /// it touched in a way that nobody counts.
     pub fn with_touched(mut self, touched: TouchedReport) -> Self {
         let counted = touched.by_resource();
         for row in &mut self.rows {
-            row.touched_bytes = Some(counted.get(&row.name).copied().unwrap_or_default());
+            let bytes = counted.get(&row.name).copied().unwrap_or_default();
+            row.touched_bytes = (!touched.is_unknown(&row.name)).then_some(bytes);
         }
         self.touched = Some(touched);
         self

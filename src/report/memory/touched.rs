@@ -74,16 +74,10 @@ impl TouchedRow {
 
 impl TouchedReport {
     pub fn of(granule_bytes: u64, frame: &FrameTouches) -> Self {
-        let unknown = |pass: &str| {
-            let mut names: Vec<String> =
-                frame.unknown.iter().filter(|(of, _)| of == pass).map(|(_, name)| name.clone()).collect();
-            names.dedup();
-            names
-        };
         let passes = frame.passes.iter().map(|pass| TouchedPass {
             pass: pass.pass.clone(),
             resources: pass.resources.iter().map(|(name, touches)| TouchedRow::of(name, touches)).collect(),
-            unknown: unknown(&pass.pass),
+            unknown: pass.unknown.iter().cloned().collect(),
         });
         let resources = frame.resources();
         Self {
@@ -130,6 +124,11 @@ impl TouchedReport {
             )?;
         }
         Ok(())
+    }
+
+    /// Whether a pass touched it in a way that nobody counts.
+    pub fn is_unknown(&self, resource: &str) -> bool {
+        self.passes.iter().any(|pass| pass.unknown.iter().any(|name| name == resource))
     }
 
     /// Touched bytes by resource.

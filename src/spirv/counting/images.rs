@@ -1,10 +1,13 @@
 //! Texels that look-ups, fetches and stores touch.
 
-use super::{NOTHING, Walk};
+use super::Walk;
 use crate::spirv::emit::ids;
 use crate::spirv::graft::push_new;
 use rspirv::dr::{Instruction, Operand};
 use rspirv::spirv::{Capability, Dim, ImageOperands, Op, Word};
+
+/// What says how a texel's bits become a number, and not which texel it is.
+const EXTENDS: ImageOperands = ImageOperands::SIGN_EXTEND.union(ImageOperands::ZERO_EXTEND);
 
 impl Walk {
     /// Dimensions of the image that `value` holds: which, and whether it has layers.
@@ -40,7 +43,7 @@ impl Walk {
     pub(super) fn sample(&mut self, instruction: &Instruction, body: &mut Vec<Instruction>) -> Result<(), String> {
         let operand = |index: usize| instruction.operands.get(index).and_then(Operand::id_ref_any);
         let (Some(image), Some(at)) = (operand(0), operand(1)) else { return Ok(()) };
-        let slot = self.slot(image);
+        let slot = self.slot(image)?;
         let (dim, arrayed) = self.dimensions(image).ok_or("a look-up without the image's type")?;
         let (kind, count) = match (dim, arrayed) {
             (Dim::Dim2D, false) => (0, 2),
@@ -51,23 +54,26 @@ impl Walk {
         };
         let place = self.place(at, count, body);
         let op = instruction.class.opcode;
-        if matches!(op, Op::ImageGather | Op::ImageDrefGather) {
-            self.call(body, "mark_gathered", &[slot, place]);
-            return Ok(());
-        }
-        let kind = self.emitter.number(kind);
         let mask = instruction.operands.iter().position(|operand| matches!(operand, Operand::ImageOperands(_)));
         let asked = mask.map(|mask| match &instruction.operands[mask] {
             Operand::ImageOperands(asked) => (*asked, mask),
             _ => unreachable!("found by its kind"),
         });
+        if matches!(op, Op::ImageGather | Op::ImageDrefGather) {
+            if asked.is_some() || dim != Dim::Dim2D {
+                return Err(format!("a gather in {dim:?} with {asked:?} is not followed"));
+            }
+            self.call(body, "mark_gathered", &[slot, place]);
+            return Ok(());
+        }
+        let kind = self.emitter.number(kind);
         match asked {
-            Some((asked, mask)) if asked.contains(ImageOperands::GRAD) => {
+            Some((asked, mask)) if asked.difference(EXTENDS) == ImageOperands::GRAD => {
                 let (Some(across), Some(down)) = (operand(mask + 1), operand(mask + 2)) else { return Ok(()) };
                 let [across, down] = [across, down].map(|of| self.pair(of, body));
                 self.call(body, "mark_gradients", &[slot, place, kind, across, down]);
             }
-            Some((asked, mask)) if asked.contains(ImageOperands::LOD) => {
+            Some((asked, mask)) if asked.difference(EXTENDS) == ImageOperands::LOD => {
                 let Some(level) = operand(mask + 1) else { return Ok(()) };
                 let level = self.as_float(level, body);
                 self.call(body, "mark_sampled", &[slot, place, kind, level]);
@@ -97,9 +103,8 @@ impl Walk {
         self.emitter.push(body, Op::ConvertSToF, float, ids(&[level]))
     }
 
-    fn slot(&mut self, image: Word) -> Word {
-        let known = self.images.get(&image).copied();
-        known.unwrap_or_else(|| self.emitter.number(NOTHING))
+    fn slot(&self, image: Word) -> Result<Word, String> {
+        self.images.get(&image).copied().ok_or_else(|| "an image that is not followed to its binding".to_owned())
     }
 
     /// Counts a texel that is fetched, read or written.
@@ -111,7 +116,7 @@ impl Walk {
     ) -> Result<(), String> {
         let operand = |index: usize| instruction.operands.get(index).and_then(Operand::id_ref_any);
         let (Some(image), Some(at)) = (operand(0), operand(1)) else { return Ok(()) };
-        let slot = self.slot(image);
+        let slot = self.slot(image)?;
         let (dim, arrayed) = self.dimensions(image).ok_or("a texel without the image's type")?;
         let count = match (dim, arrayed) {
             (Dim::Dim2D, false) => 2,
@@ -134,12 +139,11 @@ impl Walk {
         if let Some(mask) = mask {
             let Operand::ImageOperands(asked) = instruction.operands[mask] else { unreachable!("found by its kind") };
             let next = operand(mask + 1);
-            let target = if asked.contains(ImageOperands::LOD) {
-                Some(&mut level)
-            } else if asked.contains(ImageOperands::SAMPLE) {
-                Some(&mut one_sample)
-            } else {
-                None
+            let target = match asked.difference(EXTENDS) {
+                ImageOperands::LOD => Some(&mut level),
+                ImageOperands::SAMPLE => Some(&mut one_sample),
+                ImageOperands::NONE => None,
+                asked => return Err(format!("a texel with {asked:?} is not followed")),
             };
             if let (Some(target), Some(next)) = (target, next) {
                 let ty = self.types.get(&next).copied().unwrap_or(uint);

@@ -15,8 +15,8 @@ use rspirv::dr::{Block, Function, Instruction, Module, Operand};
 use rspirv::spirv::{BuiltIn, ExecutionMode, ExecutionModel, Op, StorageClass, Word};
 use std::collections::{BTreeMap, HashMap};
 
-/// Slot of all that is not counted. That of a binding is one more than its number.
-pub const NOTHING: u32 = 0;
+/// The slot of a binding is this and its number.
+pub const FIRST_BINDING: u32 = 1;
 /// Slots of vertex streams begin here.
 pub const FIRST_STREAM: u32 = 64;
 /// Where the functions look for a slot of set 1: what they take it by.
@@ -78,7 +78,8 @@ pub fn counting(words: &[u32], counters: &Counters<'_>, attributes: &[Attribute]
     Ok(module.assemble())
 }
 
-/// Depth is tested before a shader that only shades, as every driver does where nobody would see it. What counts is seen.
+/// Depth is tested before a shader that only shades, as drivers do where nobody would see it: a shader that counts is seen. One that lets go of
+/// fragments is left as it is, and counts hidden ones too.
 fn tests_depth_early(module: &mut Module) {
     let Some(entry) = module
         .entry_points
@@ -162,7 +163,7 @@ impl Walk {
             let (Some((set, binding)), Some((class, to))) = (self.layout.place(id), self.layout.pointee(ty)) else {
                 continue;
             };
-            let place = self.emitter.number((binding + 1) | if set == 1 { IN_SET_1 } else { 0 });
+            let place = self.emitter.number((FIRST_BINDING + binding) | if set == 1 { IN_SET_1 } else { 0 });
             match class {
                 StorageClass::StorageBuffer | StorageClass::Uniform => {
                     let pointer =
@@ -248,12 +249,12 @@ impl Walk {
             }
             Op::FunctionCall => {
                 let places = first.and_then(|function| self.opaque.get(&function)).cloned().unwrap_or_default();
-                let nothing = self.emitter.number(NOTHING);
                 let slot = |place: usize| {
                     let image = instruction.operands.get(1 + place).and_then(Operand::id_ref_any);
-                    image.and_then(|image| self.images.get(&image).copied()).unwrap_or(nothing)
+                    image.and_then(|image| self.images.get(&image).copied())
                 };
-                let slots: Vec<Word> = places.into_iter().map(slot).collect();
+                let slots: Option<Vec<Word>> = places.into_iter().map(slot).collect();
+                let slots = slots.ok_or("an image that is handed on and not followed to its binding")?;
                 instruction.operands.extend(ids(&slots));
             }
             Op::ImageSampleImplicitLod
@@ -264,7 +265,14 @@ impl Walk {
             | Op::ImageDrefGather => self.sample(&instruction, body)?,
             Op::ImageFetch | Op::ImageRead => self.texel(&instruction, false, body)?,
             Op::ImageWrite => self.texel(&instruction, true, body)?,
-            Op::ImageTexelPointer | Op::CopyMemory | Op::CopyMemorySized => {
+            Op::ImageTexelPointer
+            | Op::CopyMemory
+            | Op::CopyMemorySized
+            | Op::SampledImage
+            | Op::ImageSampleProjImplicitLod
+            | Op::ImageSampleProjExplicitLod
+            | Op::ImageSampleProjDrefImplicitLod
+            | Op::ImageSampleProjDrefExplicitLod => {
                 return Err(format!("Op{op:?} is not followed"));
             }
             _ => {}
@@ -309,7 +317,10 @@ impl Walk {
         let Some(pointer) = self.pointers.get(&id).copied() else {
             let pointee = self.types.get(&id).and_then(|ty| self.layout.pointee(*ty));
             let leads_out = pointee.is_some_and(|(class, _)| {
-                matches!(class, StorageClass::StorageBuffer | StorageClass::PhysicalStorageBuffer)
+                matches!(
+                    class,
+                    StorageClass::StorageBuffer | StorageClass::Uniform | StorageClass::PhysicalStorageBuffer
+                )
             });
             return if leads_out { Err("a pointer whose buffer is not known".to_owned()) } else { Ok(()) };
         };
@@ -356,5 +367,7 @@ fn is_atomic(op: Op) -> bool {
             | Op::AtomicOr
             | Op::AtomicXor
             | Op::AtomicFAddEXT
+            | Op::AtomicFMinEXT
+            | Op::AtomicFMaxEXT
     )
 }

@@ -119,7 +119,7 @@ pub struct BufferAddresses {
 impl BufferAddresses {
     /// `buffers`: all that the frame has of them.
     ///
-    /// Errors: memory for the upload (exit code 4).
+    /// Errors: memory for the upload (exit code 4); what is touched is to be counted, and buffers share bytes (2).
     pub fn new<'a>(
         gpu: &Arc<Gpu>,
         resources: &mut Resources,
@@ -130,7 +130,7 @@ impl BufferAddresses {
         for buffer in buffers.filter(|_| is_by_address) {
             let own = addresses(&mut found).into_iter().find(|(name, _)| full(name) == buffer.name);
             let (_, words) = own.unwrap_or_else(|| panic!("{} has no place in the block", buffer.name));
-            let address = buffer.address();
+            let address = buffer.address_for_shaders()?;
             *words = [address as u32, (address >> 32) as u32];
         }
         let block = resources.buffer(&full("reach"));
