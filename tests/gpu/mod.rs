@@ -3,6 +3,7 @@
 
 mod loops;
 mod lost;
+mod marks;
 mod multisample;
 mod pipeline;
 mod statistics;
