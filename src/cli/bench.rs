@@ -96,14 +96,7 @@ fn sub_command(what: What) -> Command {
                      the first that is possible",
                 ),
         )
-        .arg(
-            Arg::new("repeat")
-                .long("repeat")
-                .value_name("N")
-                .value_parser(value_parser!(u32).range(1..=10_000))
-                .default_value("5")
-                .help("Number of rounds, each of which measures every combination of a group once; intervals need three"),
-        )
+        .arg(output::repeat_flag("Number of rounds, each of which measures every combination of a group once; intervals need three"))
         .arg(
             Arg::new("rate")
                 .long("rate")

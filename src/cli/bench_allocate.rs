@@ -17,7 +17,7 @@ use crate::memory::trace::{Trace, summary};
 use crate::progress::Stage;
 use crate::settings::{COMMON, Setting, Values};
 use crate::whole_file::{make_folder, write_whole};
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command};
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -53,14 +53,7 @@ pub fn command() -> Command {
                     Strategy::WORDS.join(",")
                 )),
         )
-        .arg(
-            Arg::new("repeat")
-                .long("repeat")
-                .value_name("N")
-                .value_parser(value_parser!(u32).range(1..=10_000))
-                .default_value("5")
-                .help("Number of rounds, each of which replays a trace through every row once; intervals need three"),
-        )
+        .arg(output::repeat_flag("Number of rounds, each of which replays a trace through every row once; intervals need three"))
         .arg(
             Arg::new("caps")
                 .long("caps")

@@ -1,6 +1,6 @@
 //! `quincunx bench device`: what a device does with memory, and passes of reports held against it.
 
-use super::output::{print, print_text, quiet_flag};
+use super::output::{self, print, print_text, quiet_flag};
 use super::progress;
 use crate::bench::device::explained::{self, Explained};
 use crate::bench::device::{self, WorkRow};
@@ -34,14 +34,7 @@ pub fn command() -> Command {
                 .default_value("256MiB")
                 .help("Bytes of each of two buffers, a power of two: more than the caches hold"),
         )
-        .arg(
-            Arg::new("repeat")
-                .long("repeat")
-                .value_name("N")
-                .value_parser(value_parser!(u32).range(1..=10_000))
-                .default_value("5")
-                .help("Number of rounds, each of which measures all work once"),
-        )
+        .arg(output::repeat_flag("Number of rounds, each of which measures all work once"))
         .arg(
             Arg::new("explain")
                 .long("explain")

@@ -14,6 +14,16 @@ pub fn quiet_flag() -> Arg {
         .help("Print nothing but errors, and what --json asks for")
 }
 
+/// `--repeat N`, of verbs that measure in rounds; `help`: what a round is.
+pub fn repeat_flag(help: &'static str) -> Arg {
+    Arg::new("repeat")
+        .long("repeat")
+        .value_name("N")
+        .value_parser(value_parser!(u32).range(1..=10_000))
+        .default_value("5")
+        .help(help)
+}
+
 /// `-o DIR`.
 pub fn folder_flag(help: impl Into<StyledStr>) -> Arg {
     Arg::new("output").short('o').long("output").value_name("DIR").value_parser(value_parser!(PathBuf)).help(help)

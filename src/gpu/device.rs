@@ -335,7 +335,7 @@ impl Gpu {
         let rules = Rules::new(&caps, request.strategy, request.budget_bytes, request.block_bytes);
         let memory = Arc::new(Memory::new(device.clone(), names.clone(), &caps, rules, request.recorder.clone()));
         let marks = granule_bytes.map(|bytes| Marks::new(&device, &memory, bytes)).transpose();
-        // Nothing else holds the device yet.
+        // SAFETY: nothing else holds the device yet.
         let marks = marks.inspect_err(|_| unsafe { device.destroy_device(None) })?;
         Ok(Self {
             caps,

@@ -24,14 +24,15 @@ pub struct Step {
     pub ty: Word,
     /// Bytes between the columns of a matrix that lies there.
     pub matrix_stride: Option<u32>,
-    /// Bytes of each index, which a member of a struct has already been multiplied with.
+    /// From the beginning.
     pub distance: Distance,
 }
 
 /// How far a step goes.
 pub enum Distance {
+    /// To a member of a struct.
     Bytes(u32),
-    /// So many for each.
+    /// To an element: so many bytes for each before it.
     Each(u32),
 }
 
