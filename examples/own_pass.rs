@@ -106,7 +106,8 @@ impl OwnFrame for EdgesFrame {
     fn record(&self, cmd: &mut Commands, picture: Edge<'_, Image>) -> Result<()> {
         let Extent { width, height } = self.color.description.extent;
         let pixels = u64::from(width) * u64::from(height);
-        let traffic = Traffic { read_bytes: 16 * pixels, written_bytes: 16 * pixels, invocations: Some(pixels) };
+        let traffic =
+            Traffic { read_bytes: Some(16 * pixels), written_bytes: Some(16 * pixels), invocations: Some(pixels) };
         cmd.pass(NAME, traffic, |cmd| {
             // The technique says who touched its picture last; nobody has touched the pass's own in this frame.
             cmd.barriers([picture.to(Access::ComputeRead), self.color.discard(Access::ComputeWrite)]);

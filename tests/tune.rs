@@ -97,6 +97,11 @@ fn where_no_picture_is_near_enough_the_nearest_is_named() {
     let found: Value = serde_json::from_str(&tune("split=none,one-pass", "flip=0.000001").fine().out).unwrap();
     assert_eq!(found["chosen"]["settings"], serde_json::json!({"split": "none"}));
     assert_eq!(found["chosen"]["errors"]["flip"], 0.0);
+    // What was asked for, in other words.
+    let found: Value = serde_json::from_str(&tune("texels=auto", "flip=1").fine().out).unwrap();
+    let verdicts: Vec<_> =
+        found["beside"].as_array().unwrap().iter().map(|row| row["verdict"].as_str().unwrap()).collect();
+    assert_eq!(verdicts, ["the same settings", "chosen"]);
 }
 
 #[test]

@@ -41,6 +41,8 @@ const uint MARK_SLOT_WORDS = 13u;
 const uint MARK_ADDRESSES = 2097152u;
 const uint MARK_ADDRESS_WORDS = 6u;
 const uint MARK_MOST_ADDRESSES = 128u;
+// Words from the beginning of all marks to how many invocations there were, in two words: behind the buffers with addresses.
+const uint MARK_INVOCATIONS = 2097921u;
 // Words of a record before its marks.
 const uint MARK_COUNTS = 4u;
 const uint MARK_REPEAT = 0u;
@@ -266,7 +268,13 @@ void mark_gathered(const uint where, const vec3 place) {
     mark_footprint(slot, place, true, 0u, true);
 }
 
+// The invocation that calls it is one of those that do a pass's work: it computes, or shades a fragment.
+void mark_invocation() {
+    add(MARK_INVOCATIONS - marks.words[0], 1u);
+}
+
 void main() {
+    mark_invocation();
     mark_bytes(0u, 0u, 4u, 0u);
     mark_address(uvec2(0), 0u, 4u, 0u);
     mark_texel(0u, uvec3(0), 0u, 0u, 0u);

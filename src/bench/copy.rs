@@ -33,13 +33,13 @@ impl BufferCopy {
         let mut cmd = Commands::begin(gpu, "bench", Submits::PerPass)?;
         // Memory that was never written may be one page of zeros, which copies from the cache. And a copying stage,
         // too, reads what a pass has just written.
-        let fill = Traffic { written_bytes: bytes, ..Traffic::default() };
+        let fill = Traffic { written_bytes: Some(bytes), ..Traffic::default() };
         cmd.pass("bench.fill", fill, |cmd| {
             cmd.barriers([source.discard(Access::TransferWrite)]);
             cmd.fill_buffer(&source, 0x3c00_3c00);
             Ok(())
         })?;
-        let copy = Traffic { read_bytes: bytes, written_bytes: bytes, invocations: None };
+        let copy = Traffic { read_bytes: Some(bytes), written_bytes: Some(bytes), invocations: None };
         cmd.pass("bench.copy", copy, |cmd| {
             cmd.barriers([
                 source.from(Access::TransferWrite).to(Access::TransferRead),

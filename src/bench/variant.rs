@@ -48,10 +48,10 @@ impl Variant {
         self.renderer.view.extent
     }
 
-    /// Bytes read and written by the passes that are timed.
-    pub fn traffic_bytes(&self) -> [u64; 2] {
-        let passes = self.passes.iter().map(|index| self.renderer.passes()[*index].traffic);
-        passes.fold([0, 0], |[read, written], pass| [read + pass.read_bytes, written + pass.written_bytes])
+    /// Bytes read and written by the passes that are timed; None where one of them cannot tell.
+    pub fn traffic_bytes(&self) -> [Option<u64>; 2] {
+        let passes = || self.passes.iter().map(|index| self.renderer.passes()[*index].traffic);
+        [passes().map(|pass| pass.read_bytes).sum(), passes().map(|pass| pass.written_bytes).sum()]
     }
 
     /// Bytes that the stage leaves, whatever it wrote on the way for passes of its own: of a copy, what is copied.

@@ -48,11 +48,12 @@ impl From<Submits> for Recording {
     }
 }
 
-/// What a pass moves, by arithmetic: the bytes that its invocations read and write in buffers and images.
+/// What a pass moves, by arithmetic: the bytes that its invocations read and write in buffers and images. None of what arithmetic cannot
+/// tell, such as nodes of a tree, texels that a triangle covers, lights that a tile has.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Traffic {
-    pub read_bytes: u64,
-    pub written_bytes: u64,
+    pub read_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
     /// Invocations of its compute shader; None for draws.
     pub invocations: Option<u64>,
 }

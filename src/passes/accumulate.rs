@@ -50,8 +50,8 @@ impl Accumulate {
         let extent = self.color.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * (SUM_BYTES + 16),
-            written_bytes: pixels * (SUM_BYTES + 16),
+            read_bytes: Some(pixels * (SUM_BYTES + 16)),
+            written_bytes: Some(pixels * (SUM_BYTES + 16)),
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{technique}.accumulate"), traffic, |cmd| {

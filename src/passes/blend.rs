@@ -239,8 +239,7 @@ impl Blend {
         solid: SolidPicture<'_>,
     ) -> Result<()> {
         let SolidPicture { depth, color } = solid;
-        let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
-        cmd.pass(&format!("{technique}.blend"), traffic, |cmd| {
+        cmd.pass(&format!("{technique}.blend"), Traffic::default(), |cmd| {
             let (drawn, clear) = match self.over {
                 Over::Picture => (color.to(Access::ColorWrite), None),
                 Over::Nothing => {

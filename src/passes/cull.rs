@@ -109,9 +109,13 @@ pub fn record(
         (CullBy::Workgroup, [x, y]) => [x * THREADS, y, 1],
     };
     let traffic = Traffic {
-        read_bytes: extent.pixel_count() * texel_bytes
-            + tile_count(extent) * u64::from(light_count) * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
-        written_bytes: mask_bytes(extent, light_count),
+        read_bytes: Some(
+            extent.pixel_count() * texel_bytes
+                + tile_count(extent)
+                    * u64::from(light_count)
+                    * size_of::<crate::gpu::shader::structs::LightBlock>() as u64,
+        ),
+        written_bytes: Some(mask_bytes(extent, light_count)),
         invocations: Some(threads.into_iter().map(u64::from).product()),
     };
     cmd.pass(&format!("{technique}.cull"), traffic, |cmd| {

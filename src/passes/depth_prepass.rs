@@ -121,8 +121,8 @@ impl DepthPrepass {
         (depth, begins): (&Image, DepthBegins),
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: mesh::depth_bytes(scene, list),
-            written_bytes: depth.description.bytes(),
+            read_bytes: Some(mesh::depth_bytes(scene, list)),
+            written_bytes: Some(depth.description.bytes()),
             invocations: None,
         };
         cmd.pass(&pass(technique), traffic, |cmd| {

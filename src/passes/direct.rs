@@ -214,6 +214,8 @@ pub fn plan_with_masks(
 pub struct DirectGpu {
     pub lights: Buffer,
     pub light_count: u32,
+    /// Whether shadow rays walk the tree.
+    pub casts_rays: bool,
     pub bvh_nodes: Buffer,
     pub bvh_triangles: Buffer,
     /// With `--cull tiled`, where there are lights.
@@ -251,10 +253,17 @@ impl DirectGpu {
         Ok(Self {
             lights: filled("lights", bytemuck::cast_slice(lights))?,
             light_count: lights.len() as u32,
+            casts_rays: !tree.triangles.is_empty(),
             bvh_nodes: filled("bvh.nodes", bytemuck::cast_slice(&flattened(&tree.nodes)))?,
             bvh_triangles: filled("bvh.triangles", bytemuck::cast_slice(&tree.triangles))?,
             masks: has_masks.then(|| resources.buffer(&format!("{technique}.cull.masks"))),
         })
+    }
+
+    /// Bytes that so many threads read of the lights, each of all of them; None where their tiles or the tree decide.
+    pub fn read_bytes(&self, threads: u64) -> Option<u64> {
+        let is_known = self.masks.is_none() && !self.casts_rays;
+        is_known.then(|| threads * u64::from(self.light_count) * size_of::<LightBlock>() as u64)
     }
 
     /// Other lights, as many as before, for what is recorded next.

@@ -465,10 +465,9 @@ impl GBufferPass {
             + 4
             + gbuffer.position.as_ref().map_or(0, |_| gbuffer.position_storage.bytes());
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(scene, self.list.calls()),
             // Each pixel once: overdraw depends on the view.
-            written_bytes: gbuffer.extent().pixel_count() * pixel_bytes,
-            invocations: None,
+            written_bytes: Some(gbuffer.extent().pixel_count() * pixel_bytes),
+            ..Traffic::default()
         };
         cmd.pass(&format!("{technique}.gbuffer"), traffic, |cmd| {
             cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));

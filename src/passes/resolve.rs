@@ -40,8 +40,8 @@ impl Resolve {
     pub fn record(&self, cmd: &mut Commands, technique: &str, drawn: Edge<'_, Image>) -> Result<()> {
         let extent = self.color.description.extent;
         let traffic = Traffic {
-            read_bytes: drawn.resource.description.bytes(),
-            written_bytes: self.color.description.bytes(),
+            read_bytes: Some(drawn.resource.description.bytes()),
+            written_bytes: Some(self.color.description.bytes()),
             invocations: Some(extent.pixel_count()),
         };
         cmd.pass(&format!("{technique}.resolve"), traffic, |cmd| {

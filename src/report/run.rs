@@ -156,13 +156,13 @@ pub struct PassRow {
     /// `host, once`, `device, once` or, of the host's part of each frame, `host`; None of a pass of the device in each.
     #[serde(default, rename = "where", skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
-    /// Bytes that it reads by its own reckoning, or as it has counted them (`--touched`); None of what ran once.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bytes_read: Option<u64>,
+    /// Bytes that it reads by its own reckoning, null where it cannot tell, or as it has counted them (`--touched`); None of what ran once.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub bytes_read: Option<Option<u64>>,
     /// The same, written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bytes_written: Option<u64>,
-    /// Shader invocations by the same reckoning, null where it cannot tell; None of what ran once.
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub bytes_written: Option<Option<u64>>,
+    /// The same: invocations of its compute shader, or of its fragment shaders, which only counting can tell.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub invocations: Option<Option<u64>>,
     /// Milliseconds by the clock that `Times::clock` names; None of a pass that was not timed.
@@ -364,10 +364,11 @@ impl Times {
     /// The same with the bytes that passes asked for where a frame has counted them, in place of their own reckoning.
     pub fn counted(mut self, touched: Option<&TouchedReport>) -> Self {
         for pass in touched.into_iter().flat_map(|touched| &touched.passes) {
-            let sum = |bytes: fn(&TouchedRow) -> u64| Some(pass.resources.iter().map(bytes).sum());
+            let sum = |bytes: fn(&TouchedRow) -> u64| Some(Some(pass.resources.iter().map(bytes).sum()));
             for row in self.passes.iter_mut().filter(|row| row.name == pass.pass && row.place.is_none()) {
                 row.bytes_read = sum(|row| row.asked_read_bytes);
                 row.bytes_written = sum(|row| row.asked_written_bytes);
+                row.invocations = Some(Some(pass.invocations));
             }
         }
         self

@@ -85,8 +85,11 @@ fn settle(
             return Err(Error::interrupted("interrupted; nothing is chosen"));
         }
         let asked = label(&Point::new());
+        let own = measured.rows.iter().find(|row| row.variant == label(&space.points[chosen]));
+        let is_other = |row: &&BenchRow| own.is_none_or(|own| row.settings != own.settings);
         // The request's own settings may not be among those that are searched.
-        let candidates = measured.rows.iter().filter(|row| row.variant != asked || space.asked.is_some());
+        let candidates =
+            measured.rows.iter().filter(|row| row.variant != asked || space.asked.is_some()).filter(is_other);
         let faster = tuned::faster(candidates, request.bounds);
         let next = faster.and_then(|row| match row.variant == asked {
             true => space.asked,

@@ -22,6 +22,8 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
     Chosen,
+    /// Other words for the chosen settings, such as `auto` for what that comes to.
+    Same,
     Slower,
     Faster,
     NotToldApart,
@@ -33,6 +35,7 @@ impl Verdict {
     fn words(self) -> &'static str {
         match self {
             Self::Chosen => "chosen",
+            Self::Same => "the same settings",
             Self::Slower => "slower",
             Self::Faster => "faster",
             Self::NotToldApart => "not told apart",
@@ -129,6 +132,7 @@ impl Tuned {
         match row.interval() {
             _ if row.variant == self.row().variant => Verdict::Chosen,
             _ if !row.was_measured() => Verdict::Skipped,
+            _ if row.settings == self.row().settings => Verdict::Same,
             _ if !row_is_near(row, &self.bounds) => Verdict::TooFar,
             Some([low, _]) if low > 1.0 => Verdict::Slower,
             Some([_, high]) if high < 1.0 => Verdict::Faster,
@@ -182,10 +186,16 @@ impl Tuned {
         text += &format!("chosen: {}\n", label(&self.chosen));
         if let Some(asked) = self.asked() {
             let ratio = asked.speed_up.as_ref().map(|speed_up| table::ratio(&speed_up.ratio)).unwrap_or_default();
-            text += &format!("its time is {ratio} of that of the settings as asked\n");
-            if self.verdict(asked) == Verdict::Faster {
-                text += "the settings as asked are faster than all that were searched: keep them\n";
-            }
+            text += &match self.verdict(asked) {
+                Verdict::Chosen | Verdict::Same => "these are the settings as asked: keep them\n".to_owned(),
+                verdict => format!(
+                    "its time is {ratio} of that of the settings as asked\n{}",
+                    match verdict {
+                        Verdict::Faster => "the settings as asked are faster than all that were searched: keep them\n",
+                        _ => "",
+                    }
+                ),
+            };
         }
         text
     }

@@ -334,13 +334,15 @@ fn bytes_of_simple_passes_are_their_texels() {
     ] {
         assert_eq!(bytes_of(&report, name), bytes, "{name}");
     }
-    let drawn = number(&report["counters"]["triangles_drawn"]) as u64;
-    // An index and a vertex of 12 + 36 bytes for each corner.
-    assert_eq!(traffic_of(&report, "gbuffer"), [drawn * 3 * 52, PIXELS * 28, 0]);
+    // Nobody knows how often a driver makes a vertex, and which texels triangles cover.
+    assert_eq!(traffic_of(&report, "gbuffer"), [0, PIXELS * 28, 0]);
     // Position and normal; on processors two texels a thread.
     let texels = if report["device"]["type"] == "cpu" { 2 } else { 1 };
     assert_eq!(traffic_of(&report, "split"), [split * 16, split * 16, split / texels]);
-    assert_eq!(traffic_of(&report, "shade")[..2], [split * 16, split * 8]);
+    // Each thread reads the lights of its subset, of 48 bytes.
+    let light_bytes = 32 * 48 / (PATTERN[0] * PATTERN[1]);
+    let [read, written, threads] = traffic_of(&report, "shade");
+    assert_eq!([read, written], [split * 16 + threads * light_bytes, split * 8]);
     assert_eq!(traffic_of(&report, "gather"), [frame * 8, frame * 8, frame / 2]);
     assert_eq!(traffic_of(&report, "discontinuity")[1], PIXELS * 4);
     // Along the rows, and along the columns.
@@ -350,7 +352,9 @@ fn bytes_of_simple_passes_are_their_texels() {
     let one_texel = ["--texels", "1", "--split", "subsample", "--position", "float", "--workgroup", "64x1"];
     let subsample = render(&program, LAMPS, INTERLEAVED, &one_texel);
     assert_eq!(bytes_of(&subsample, "shade.irradiance"), sub_buffer * 8);
-    assert_eq!(traffic_of(&subsample, "shade"), [sub_buffer * 24, sub_buffer * 8, sub_buffer.next_multiple_of(64)]);
+    let threads = sub_buffer.next_multiple_of(64);
+    let shaded = [sub_buffer * 24 + threads * 32 * 48, sub_buffer * 8, threads];
+    assert_eq!(traffic_of(&subsample, "shade"), shaded);
     assert_eq!(traffic_of(&subsample, "upscale"), [4 * PIXELS * 8, PIXELS * 8, PIXELS]);
     assert_eq!(bytes_of(&subsample, "gbuffer.position"), PIXELS * 16);
 }

@@ -119,6 +119,7 @@ fn touched(touched: Touched, count: u32) -> BTreeMap<String, Touches> {
     require_silence(&gpu, "a pass that counts");
     let touches = marks.touches();
     assert_eq!(touches.passes.len(), 1);
+    assert_eq!(touches.passes[0].invocations, u64::from(count));
     touches.passes[0].resources.clone()
 }
 

@@ -138,6 +138,49 @@ fn bytes_that_passes_ask_for_know_the_lights() {
     assert_ne!(none.2, few.2, "splits differ");
 }
 
+/// What a pass reckons without counting: each thread reads all lights of its subset, which is no less than what it does.
+#[test]
+fn what_a_pass_reckons_knows_the_lights() {
+    let program = Program::new();
+    for (split, subsets) in [("none", 1), ("branch", 4), ("remap", 4), ("one-pass", 4), ("two-pass", 4)] {
+        let own = [&["--split", split][..], if subsets == 1 { &[] } else { &["--pattern", "2x2"] }].concat();
+        let shade = |vpls: &str, more: &[&str]| {
+            let settings = [&["cornell", "--vpls", vpls], &SIZE[..], &own, more].concat();
+            let report = rendered(&program, &settings);
+            let pass = ends(list(&report["passes"]), "name", "shade");
+            ["bytes_read", "invocations"].map(|key| pass[key].as_u64().unwrap())
+        };
+        let [few, many] = ["16", "64"].map(|vpls| shade(vpls, &[]));
+        assert_eq!(few[1], many[1], "{split}");
+        assert_eq!(many[0] - few[0], many[1] * (64 - 16) * 48 / subsets, "{split}");
+        let counted = shade("64", &["--touched", "page"]);
+        assert!(counted[0] <= many[0] && counted[0] > many[0] / 2, "{split}: {counted:?} {many:?}");
+        assert!(counted[1] >= many[1] && counted[1] < 2 * many[1], "{split}: whole workgroups: {counted:?} {many:?}");
+    }
+}
+
+/// Fragments that are shaded: each pixel's nearest surface alone behind a prepass, others too without.
+#[test]
+fn invocations_are_counted_where_arithmetic_cannot_tell() {
+    let program = Program::new();
+    let of = |technique: &str, pass: &str, more: &[&str]| {
+        let report = rendered(&program, &[&["cornell", "--technique", technique], &SIZE[..], more].concat());
+        let invocations = ends(list(&report["passes"]), "name", pass)["invocations"].clone();
+        let touched = report["memory"]["touched"]["passes"].as_array();
+        let counted = touched.map(|passes| ends(passes, "pass", pass)["invocations"].clone());
+        assert!(counted.is_none_or(|counted| counted == invocations), "{technique}: {invocations}");
+        invocations.as_u64()
+    };
+    assert_eq!(of("deferred", "gbuffer", &[]), None);
+    let counted = |technique: &str, pass: &str| of(technique, pass, &["--touched", "page"]).unwrap();
+    let seen = counted("forward", "shade");
+    assert!(seen <= PIXELS && seen > PIXELS / 2, "{seen}");
+    let drawn = counted("deferred", "gbuffer");
+    assert!(drawn > seen && drawn < 8 * seen, "{drawn} {seen}");
+    let shaded = counted("deferred", "shade");
+    assert_eq!(shaded % 64, 0, "workgroups of 64: {shaded}");
+}
+
 #[test]
 fn pieces_of_a_page_touch_no_less_than_lines() {
     let program = Program::new();

@@ -54,9 +54,10 @@ fn maps_lose_no_pixel_from_any_camera() {
 fn traffic_follows_what_is_drawn() {
     let watched = Watched::open("hall:triangles=8000");
     for choice in ["culled", "all"] {
-        let renderer = watched.render("deferred", &[("size", "97x53"), ("geometry", choice)]);
-        let read_bytes = renderer.passes()[0].traffic.read_bytes;
-        // An index and a vertex of 12 + 36 bytes for each corner.
-        assert_eq!(read_bytes as f64, renderer.counters["triangles_drawn"] * 3.0 * 52.0, "{choice}");
+        let renderer = watched.render("forward", &[("size", "97x53"), ("geometry", choice), ("depth-prepass", "on")]);
+        let depth = renderer.passes().iter().find(|pass| pass.name == "forward.depth").unwrap();
+        let read_bytes = depth.traffic.read_bytes.expect("vertices alone are read") as f64;
+        // An index and a position of 12 bytes for each corner.
+        assert_eq!(read_bytes, renderer.counters["triangles_drawn"] * 3.0 * 16.0, "{choice}");
     }
 }

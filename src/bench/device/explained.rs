@@ -71,7 +71,7 @@ pub fn explained(report: &RunReport, rows: &[WorkRow]) -> Result<Vec<Explained>>
     }
     let pass = |pass: &PassRow| {
         let ms = pass.ms.as_ref()?.as_ref()?.median;
-        let least_ms = limits.least_ms(pass.bytes_read?, pass.bytes_written?);
+        let least_ms = limits.least_ms(pass.bytes_read??, pass.bytes_written??);
         let share = least_ms / ms;
         Some(Explained { pass: pass.name.clone(), ms, least_ms, share, is_impossible: share > IMPOSSIBLE_FROM })
     };

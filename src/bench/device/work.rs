@@ -155,7 +155,7 @@ impl Worked {
         let Buffers { source, target } = &**buffers;
         let bytes = source.bytes;
         let mut cmd = Commands::begin(gpu, "bench", Submits::PerPass)?;
-        let filled = Traffic { written_bytes: 2 * bytes, ..Traffic::default() };
+        let filled = Traffic { written_bytes: Some(2 * bytes), ..Traffic::default() };
         cmd.pass("bench.fill", filled, |cmd| {
             cmd.barriers([source.discard(Access::TransferWrite), target.discard(Access::TransferWrite)]);
             cmd.fill_buffer(source, fill);
@@ -164,7 +164,11 @@ impl Worked {
         })?;
         let [read_bytes, written_bytes] = work.moved_bytes(bytes);
         let count = work.count(bytes);
-        let traffic = Traffic { read_bytes, written_bytes, invocations: pipeline.is_some().then_some(count) };
+        let traffic = Traffic {
+            read_bytes: Some(read_bytes),
+            written_bytes: Some(written_bytes),
+            invocations: pipeline.is_some().then_some(count),
+        };
         cmd.pass("bench.device", traffic, |cmd| {
             let Some(pipeline) = &pipeline else {
                 cmd.barriers([

@@ -249,8 +249,11 @@ impl DeviceWalk {
     fn new(gpu: &Arc<Gpu>, tree: &Rc<Tree>, rays: &Rc<Buffer>, ray_count: u32, query: Query) -> Result<Self> {
         let hits = buffer(gpu, "hits", 4 * u64::from(ray_count))?;
         let mut cmd = Commands::begin(gpu, "bench", Submits::PerPass)?;
-        let traffic =
-            Traffic { read_bytes: rays.bytes, written_bytes: hits.bytes, invocations: Some(u64::from(ray_count)) };
+        let traffic = Traffic {
+            read_bytes: Some(rays.bytes),
+            written_bytes: Some(hits.bytes),
+            invocations: Some(u64::from(ray_count)),
+        };
         cmd.pass("bench.rays", traffic, |cmd| {
             cmd.barriers([hits.discard(Access::ComputeWrite)]);
             let params = RaysParams { ray_count, kind: if query == Query::Any { RAY_SHADOW } else { 0 } };

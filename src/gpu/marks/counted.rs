@@ -22,6 +22,8 @@ pub struct Touches {
 #[derive(Clone, Debug)]
 pub struct PassTouches {
     pub pass: String,
+    /// Of compute and fragment shaders.
+    pub invocations: u64,
     pub resources: BTreeMap<String, Touches>,
     /// Resources that it touched in a way that nobody counts.
     pub unknown: BTreeSet<String>,
@@ -80,6 +82,7 @@ impl FrameTouches {
         let place = self.passes.iter().position(|known| known.pass == name).unwrap_or_else(|| {
             self.passes.push(PassTouches {
                 pass: name.to_owned(),
+                invocations: 0,
                 resources: BTreeMap::new(),
                 unknown: BTreeSet::new(),
             });

@@ -1,7 +1,8 @@
 //! Marks of what a frame reads and writes, by its shaders themselves: a buffer that they mark granules in, and whose marks are where.
 //! Shader: marks.comp.
 //!
-//! The buffer has three parts: slots of descriptor sets, buffers that are reached by their addresses, and a record a resource.
+//! The buffer has four parts: slots of descriptor sets, buffers that are reached by their addresses, invocations, and a record a
+//! resource.
 //! What no shader does (copies, clears, attachments, indices) is noted while it is recorded (`noted`).
 
 pub mod counted;
@@ -11,8 +12,8 @@ pub mod shape;
 use super::description::VertexBuffer;
 use super::shader::gpu::marks::{
     COMP_BOTH, COMP_OWN, MARK_ADDRESS_WORDS, MARK_ADDRESSES, MARK_BLENDS_LEVELS, MARK_COUNTS, MARK_EDGE,
-    MARK_MAGNIFIES_LINEARLY, MARK_MINIFIES_LINEARLY, MARK_MIRROR, MARK_MOST_ADDRESSES, MARK_REPEAT, MARK_SLOT_WORDS,
-    MARK_SLOTS,
+    MARK_INVOCATIONS, MARK_MAGNIFIES_LINEARLY, MARK_MINIFIES_LINEARLY, MARK_MIRROR, MARK_MOST_ADDRESSES, MARK_REPEAT,
+    MARK_SLOT_WORDS, MARK_SLOTS,
 };
 use super::shader::structs::MarkSlotBlock;
 use super::shader::{Shader, Stage};
@@ -38,9 +39,9 @@ pub const BINDING: u32 = 63;
 const SLOTS_ALIGNMENT_BYTES: u64 = 256;
 const WORD_BYTES: u64 = 4;
 const SLOTS_BYTES: u64 = MARK_ADDRESSES as u64 * WORD_BYTES;
-const ADDRESSES_BYTES: u64 = (1 + MARK_MOST_ADDRESSES as u64 * MARK_ADDRESS_WORDS as u64) * WORD_BYTES;
-/// Where records begin.
-const RECORDS: u64 = SLOTS_BYTES + ADDRESSES_BYTES.next_multiple_of(SLOTS_ALIGNMENT_BYTES);
+/// Where records begin: behind buffers with addresses and the two words that count invocations.
+const RECORDS: u64 = ((MARK_INVOCATIONS as u64 + 2) * WORD_BYTES).next_multiple_of(SLOTS_ALIGNMENT_BYTES);
+const _: () = assert!(MARK_INVOCATIONS == MARK_ADDRESSES + 1 + MARK_MOST_ADDRESSES * MARK_ADDRESS_WORDS);
 /// Room for marks of 5 GiB in lines.
 const RECORDS_BYTES: u64 = 20 << 20;
 
@@ -342,6 +343,13 @@ impl Marks {
         let live: Vec<(u64, String, Shape)> =
             state.live.iter().map(|(record, (name, shape))| (*record, name.clone(), *shape)).collect();
         let mut touches = std::mem::take(&mut state.touches);
+        // SAFETY: as below.
+        let invocations = unsafe { &mut state.all()[MARK_INVOCATIONS as usize..][..2] };
+        let count = u64::from(invocations[0]) | u64::from(invocations[1]) << 32;
+        invocations.fill(0);
+        if count > 0 {
+            touches.pass(pass).invocations += count;
+        }
         for (record, name, shape) in live {
             let words = words_of(&shape) as usize;
             // SAFETY: the fence of the pass was waited for.

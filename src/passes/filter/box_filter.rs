@@ -62,8 +62,11 @@ impl BoxFilter {
         let down = height_px.div_ceil(self.rows);
         let [texels, threads] = [height_px, down].map(|rows| u64::from(width_px) * u64::from(rows));
         let taps = u64::from(self.size_px[0]) * u64::from(self.size_px[1] + self.rows - 1);
-        let traffic =
-            Traffic { read_bytes: threads * taps * 12, written_bytes: texels * 8, invocations: Some(threads) };
+        let traffic = Traffic {
+            read_bytes: Some(threads * taps * 12),
+            written_bytes: Some(texels * 8),
+            invocations: Some(threads),
+        };
         cmd.pass(&self.label, traffic, |cmd| {
             cmd.barriers([source.to(Access::ComputeRead), flags.to(Access::ComputeRead), becomes_writable]);
             let bound = [

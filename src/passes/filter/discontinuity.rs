@@ -77,8 +77,10 @@ impl Discontinuity {
         let threads = u64::from(across) * u64::from(down);
         let traffic = Traffic {
             // A column and a row more than are flagged.
-            read_bytes: threads * u64::from((self.columns + 1) * (self.rows + 1)) * gbuffer.resource.surface_bytes(),
-            written_bytes: pixels * 4,
+            read_bytes: Some(
+                threads * u64::from((self.columns + 1) * (self.rows + 1)) * gbuffer.resource.surface_bytes(),
+            ),
+            written_bytes: Some(pixels * 4),
             invocations: Some(threads),
         };
         cmd.pass(&self.label, traffic, |cmd| {

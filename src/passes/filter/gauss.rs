@@ -129,8 +129,8 @@ impl Gauss {
         let threads: u64 = walks.iter().map(|horizontal| count(self.threads(*horizontal))).sum();
         let window = u64::from(self.texels + 2 * self.kernel.radius());
         Traffic {
-            read_bytes: threads * window * (8 + 4),
-            written_bytes: walks.len() as u64 * self.extent.pixel_count() * 8,
+            read_bytes: Some(threads * window * (8 + 4)),
+            written_bytes: Some(walks.len() as u64 * self.extent.pixel_count() * 8),
             invocations: Some(threads),
         }
     }

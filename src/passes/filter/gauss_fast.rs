@@ -104,8 +104,8 @@ impl FilterPass for GaussFast {
         // The middle, and a fetch for each pair of taps on either side; a fetch touches two texels.
         let fetches = 1 + 2 * u64::from(self.kernel.radius().div_ceil(2));
         let traffic = Traffic {
-            read_bytes: pixels * (8 + 4) + 2 * pixels * fetches * 8,
-            written_bytes: 3 * pixels * 8,
+            read_bytes: Some(pixels * (8 + 4) + 2 * pixels * fetches * 8),
+            written_bytes: Some(3 * pixels * 8),
             invocations: Some(3 * pixels),
         };
         cmd.pass(&self.label, traffic, |cmd| {

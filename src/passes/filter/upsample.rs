@@ -48,8 +48,8 @@ impl Upsample {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * (5 * gbuffer.resource.surface_bytes() + 4 * 8),
-            written_bytes: pixels * 8,
+            read_bytes: Some(pixels * (5 * gbuffer.resource.surface_bytes() + 4 * 8)),
+            written_bytes: Some(pixels * 8),
             invocations: Some(pixels),
         };
         cmd.pass(&self.label, traffic, |cmd| {

@@ -90,10 +90,11 @@ impl Material {
     ) -> Result<()> {
         let (depth, color) = (&targets.depth, &targets.drawn);
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(scene, list.calls()),
             // Each sample once: overdraw depends on the view.
-            written_bytes: color.description.bytes() + if self.has_prepass { 0 } else { depth.description.bytes() },
-            invocations: None,
+            written_bytes: Some(
+                color.description.bytes() + if self.has_prepass { 0 } else { depth.description.bytes() },
+            ),
+            ..Traffic::default()
         };
         let mut bound = mesh::bound(frame, scene);
         bound.extend_from_slice(lights.bound);

@@ -131,8 +131,8 @@ impl ShadowMaps {
 
     fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: self.casters.iter().map(|casters| mesh::depth_bytes(scene, casters)).sum(),
-            written_bytes: self.depth.description.bytes(),
+            read_bytes: Some(self.casters.iter().map(|casters| mesh::depth_bytes(scene, casters)).sum()),
+            written_bytes: Some(self.depth.description.bytes()),
             invocations: None,
         };
         cmd.pass(&pass(technique), traffic, |cmd| {

@@ -22,6 +22,9 @@ pub struct TouchedReport {
 pub struct TouchedPass {
     /// Its full name.
     pub pass: String,
+    /// Invocations of its compute shader, or of its fragment shaders.
+    #[serde(default)]
+    pub invocations: u64,
     pub resources: Vec<TouchedRow>,
     /// Names of resources that it touched in a way that nobody counts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -76,6 +79,7 @@ impl TouchedReport {
     pub fn of(granule_bytes: u64, frame: &FrameTouches) -> Self {
         let passes = frame.passes.iter().map(|pass| TouchedPass {
             pass: pass.pass.clone(),
+            invocations: pass.invocations,
             resources: pass.resources.iter().map(|(name, touches)| TouchedRow::of(name, touches)).collect(),
             unknown: pass.unknown.iter().cloned().collect(),
         });
@@ -95,19 +99,20 @@ impl TouchedReport {
         writeln!(text, "\ntouched, in pieces of {}", Bytes(self.granule_bytes))?;
         writeln!(
             text,
-            "{:<widest$}  {:>12} {:>12} {:>16} {:>16}",
-            "pass", "read, B", "written, B", "asked, B", "stored, B"
+            "{:<widest$}  {:>12} {:>12} {:>16} {:>16} {:>12}",
+            "pass", "read, B", "written, B", "asked, B", "stored, B", "invocations"
         )?;
         for pass in &self.passes {
             let sum = |bytes: fn(&TouchedRow) -> u64| pass.resources.iter().map(bytes).sum::<u64>();
             writeln!(
                 text,
-                "{:<widest$}  {:>12} {:>12} {:>16} {:>16}{}",
+                "{:<widest$}  {:>12} {:>12} {:>16} {:>16} {:>12}{}",
                 pass.pass,
                 sum(|row| row.read_bytes),
                 sum(|row| row.written_bytes),
                 sum(|row| row.asked_read_bytes),
                 sum(|row| row.asked_written_bytes),
+                pass.invocations,
                 if pass.unknown.is_empty() { String::new() } else { format!("  unknown: {}", pass.unknown.join(", ")) }
             )?;
         }

@@ -69,8 +69,16 @@ pub fn counting(words: &[u32], counters: &Counters<'_>, attributes: &[Attribute]
     all[..own_functions].iter_mut().for_each(|function| walk.hand_on(function));
     for function in &mut all[..own_functions] {
         walk.function(function)?;
-        if entry.1 == ExecutionModel::Vertex && function.def.as_ref().and_then(|def| def.result_id) == Some(entry.0) {
-            walk.vertices(function, attributes)?;
+        if function.def.as_ref().and_then(|def| def.result_id) == Some(entry.0) {
+            match entry.1 {
+                ExecutionModel::Vertex => walk.vertices(function, attributes)?,
+                ExecutionModel::GLCompute | ExecutionModel::Fragment => {
+                    let mut body = Vec::new();
+                    walk.call(&mut body, "mark_invocation", &[]);
+                    begin_with(function, body)?;
+                }
+                _ => {}
+            }
         }
     }
     let mut module = walk.emitter.finish();
@@ -348,6 +356,15 @@ impl Walk {
         let operands: Vec<Word> = std::iter::once(self.functions[function]).chain(arguments.iter().copied()).collect();
         self.emitter.push(body, Op::FunctionCall, void, ids(&operands));
     }
+}
+
+/// Puts `body` at the beginning of a function, behind its variables.
+fn begin_with(function: &mut Function, body: Vec<Instruction>) -> Result<(), String> {
+    let block = function.blocks.first_mut().ok_or("an entry point without a body")?;
+    let is_variable = |instruction: &Instruction| instruction.class.opcode == Op::Variable;
+    let at = block.instructions.iter().take_while(|instruction| is_variable(instruction)).count();
+    block.instructions.splice(at..at, body);
+    Ok(())
 }
 
 fn is_atomic(op: Op) -> bool {

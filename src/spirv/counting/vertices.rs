@@ -1,6 +1,6 @@
 //! What a vertex is made of: bytes of streams that no shader loads.
 
-use super::{Attribute, FIRST_STREAM, Walk};
+use super::{Attribute, FIRST_STREAM, Walk, begin_with};
 use crate::spirv::emit::ids;
 use rspirv::dr::{Function, Instruction, Operand};
 use rspirv::spirv::{BuiltIn, Decoration, Op, StorageClass, Word};
@@ -14,7 +14,6 @@ impl Walk {
         if read.is_empty() {
             return Ok(());
         }
-        let block = function.blocks.first_mut().ok_or("an entry point without a body")?;
         let (int, uint) = (self.emitter.int(), self.emitter.uint());
         let mut body = Vec::new();
         let variable = self.vertex_index();
@@ -32,10 +31,7 @@ impl Walk {
             let begin = self.emitter.push(&mut body, Op::IAdd, uint, ids(&[begin, offset]));
             self.call(&mut body, "mark_bytes", &[slot, begin, bytes, reads]);
         }
-        let is_variable = |instruction: &Instruction| instruction.class.opcode == Op::Variable;
-        let at = block.instructions.iter().take_while(|instruction| is_variable(instruction)).count();
-        block.instructions.splice(at..at, body);
-        Ok(())
+        begin_with(function, body)
     }
 
     /// Locations that the module reads.

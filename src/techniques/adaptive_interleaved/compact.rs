@@ -30,7 +30,7 @@ impl CompactPass {
         tiles: &Buffer,
     ) -> Result<()> {
         let bytes = u64::from(buffers.params.tile_count) * 4;
-        let traffic = Traffic { read_bytes: bytes, written_bytes: bytes, invocations: Some(bytes / 4) };
+        let traffic = Traffic { read_bytes: Some(bytes), written_bytes: Some(bytes), invocations: Some(bytes / 4) };
         cmd.pass(&buffers.label("compact"), traffic, |cmd| {
             cmd.barriers([guidance.to(Access::ComputeRead), bins.to(Access::ComputeWrite)]);
             cmd.barriers([tiles.discard(Access::ComputeWrite)]);

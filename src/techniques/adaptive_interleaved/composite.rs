@@ -51,8 +51,8 @@ impl Composite {
         let pixels = extent.pixel_count();
         let layers = u64::from(self.params.component_count);
         let traffic = Traffic {
-            read_bytes: pixels * (gbuffer.resource.shading_bytes() + 8 * layers),
-            written_bytes: pixels * 16,
+            read_bytes: Some(pixels * (gbuffer.resource.shading_bytes() + 8 * layers)),
+            written_bytes: Some(pixels * 16),
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {

@@ -33,7 +33,7 @@ impl FusedPass {
         gbuffer: Edge<'_, GBuffer>,
         guidance: &Buffer,
     ) -> Result<()> {
-        cmd.pass(&buffers.label("sample"), sample::traffic(buffers, gbuffer.resource), |cmd| {
+        cmd.pass(&buffers.label("sample"), sample::traffic(buffers), |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers(
                 [&buffers.rays, &buffers.irradiance, guidance].map(|buffer| buffer.discard(Access::ComputeWrite)),

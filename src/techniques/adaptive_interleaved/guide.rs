@@ -32,7 +32,8 @@ impl GuidePass {
     ) -> Result<()> {
         let tiles = u64::from(buffers.params.tile_count);
         let read_bytes = tiles * u64::from(buffers.params.tile_size()) * 16;
-        let traffic = Traffic { read_bytes, written_bytes: tiles * 4, invocations: Some(tiles) };
+        let traffic =
+            Traffic { read_bytes: Some(read_bytes), written_bytes: Some(tiles * 4), invocations: Some(tiles) };
         cmd.pass(&buffers.label("guide"), traffic, |cmd| {
             cmd.barriers([bins.discard(Access::TransferWrite)]);
             cmd.clear(bins);

@@ -33,7 +33,7 @@ impl SamplePass {
         gbuffer: Edge<'_, GBuffer>,
         estimates: &Buffer,
     ) -> Result<()> {
-        cmd.pass(&buffers.label("sample"), traffic(buffers, gbuffer.resource), |cmd| {
+        cmd.pass(&buffers.label("sample"), traffic(buffers), |cmd| {
             cmd.barriers(gbuffer.surface_to_sampled());
             cmd.barriers(
                 [estimates, &buffers.rays, &buffers.irradiance].map(|buffer| buffer.discard(Access::ComputeWrite)),
@@ -49,12 +49,8 @@ impl SamplePass {
     }
 }
 
-/// What estimating every texel moves, the samples and the tree apart.
-pub fn traffic(buffers: &ComponentBuffers, gbuffer: &GBuffer) -> Traffic {
+/// What estimating every texel moves; what it reads is up to the tree.
+pub fn traffic(buffers: &ComponentBuffers) -> Traffic {
     let texels = u64::from(buffers.params.width) * u64::from(buffers.params.height);
-    Traffic {
-        read_bytes: texels * gbuffer.surface_bytes(),
-        written_bytes: texels * (16 + 4 + 8),
-        invocations: Some(texels),
-    }
+    Traffic { read_bytes: None, written_bytes: Some(texels * (16 + 4 + 8)), invocations: Some(texels) }
 }

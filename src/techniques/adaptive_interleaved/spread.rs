@@ -71,7 +71,8 @@ impl SpreadPass {
     ) -> Result<()> {
         let bytes = u64::from(buffers.params.tile_count) * 4;
         let read_bytes = bytes + others.iter().map(|other| other.resource.bytes).sum::<u64>();
-        let traffic = Traffic { read_bytes, written_bytes: bytes, invocations: Some(bytes / 4) };
+        let traffic =
+            Traffic { read_bytes: Some(read_bytes), written_bytes: Some(bytes), invocations: Some(bytes / 4) };
         cmd.pass(&buffers.label("spread"), traffic, |cmd| {
             cmd.barriers([bins.to(Access::TransferWrite)]);
             cmd.clear(bins.resource);

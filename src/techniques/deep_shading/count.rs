@@ -40,8 +40,9 @@ impl Count {
     ) -> Result<()> {
         let lists = read.lists;
         let traffic = Traffic {
-            read_bytes: lists.begins.bytes,
-            written_bytes: self.lengths.bytes,
+            // Lists are as long as they are.
+            read_bytes: None,
+            written_bytes: Some(self.lengths.bytes),
             invocations: Some(self.space.pixel_count()),
         };
         cmd.pass(&full("count"), traffic, |cmd| {

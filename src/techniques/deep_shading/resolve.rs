@@ -37,8 +37,8 @@ impl Resolve {
     ) -> Result<()> {
         let extent = eyes[0].description.extent;
         let traffic = Traffic {
-            read_bytes: shaded.bytes(),
-            written_bytes: eyes.iter().map(|color| color.description.bytes()).sum(),
+            read_bytes: Some(shaded.bytes()),
+            written_bytes: Some(eyes.iter().map(|color| color.description.bytes()).sum()),
             invocations: Some(eyes.len() as u64 * extent.pixel_count()),
         };
         cmd.pass(&full("resolve"), traffic, |cmd| {

@@ -49,8 +49,8 @@ impl Scales {
         let count = self.params.triangle_count;
         // Three indices, and three places of each end of the exposure.
         let traffic = Traffic {
-            read_bytes: u64::from(count) * 3 * (4 + 2 * 12),
-            written_bytes: self.scales.bytes,
+            read_bytes: Some(u64::from(count) * 3 * (4 + 2 * 12)),
+            written_bytes: Some(self.scales.bytes),
             invocations: Some(u64::from(count)),
         };
         cmd.pass(&full(SCALES), traffic, |cmd| {

@@ -43,10 +43,12 @@ impl Shade {
     ) -> Result<()> {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
+        let threads = u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels));
+        let light_bytes = direct.resource.read_bytes(threads);
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.shading_bytes(),
-            written_bytes: pixels * 16,
-            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
+            read_bytes: light_bytes.map(|bytes| pixels * gbuffer.resource.shading_bytes() + bytes),
+            written_bytes: Some(pixels * 16),
+            invocations: Some(threads),
         };
         cmd.pass("deferred.shade", traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());

@@ -77,8 +77,7 @@ impl Decals {
             depth_threshold: self.depth_threshold,
             ..DecalParams::zeroed()
         };
-        let traffic = Traffic { read_bytes: mesh::read_bytes(scene, &self.calls), written_bytes: 0, invocations: None };
-        cmd.pass(&pass(), traffic, |cmd| {
+        cmd.pass(&pass(), Traffic::default(), |cmd| {
             cmd.barriers([
                 geometry.normal.from(Access::ColorWrite).to(Access::ColorWrite),
                 geometry.dsf.from(Access::ColorWrite).to(Access::FragmentSample),

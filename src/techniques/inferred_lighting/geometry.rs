@@ -272,12 +272,10 @@ impl Geometry {
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, scene: &SceneGpu, geometry: &LowGeometry) -> Result<()> {
         let attachments = geometry.attachments();
         let image_count = (attachments.len() + usize::from(geometry.motion.is_some()) + 1) as u64;
-        let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
-            read_bytes: mesh::read_bytes(scene, self.list.calls().chain(stippled)),
             // Each texel once: overdraw depends on the view.
-            written_bytes: geometry.extent().pixel_count() * 4 * image_count,
-            invocations: None,
+            written_bytes: Some(geometry.extent().pixel_count() * 4 * image_count),
+            ..Traffic::default()
         };
         cmd.pass(&format!("{NAME}.geometry"), traffic, |cmd| {
             cmd.barriers(attachments.iter().map(|image| image.discard(Access::ColorWrite)));

@@ -225,13 +225,12 @@ impl Material {
     ) -> Result<()> {
         let extent = self.drawn.description.extent;
         let drawn = &self.drawn;
-        let stippled = self.stippled.iter().map(|stippled| &stippled.call);
         let traffic = Traffic {
-            // Each pixel once, four samples of 12 bytes: overdraw depends on the view.
-            read_bytes: mesh::read_bytes(scene, self.solid.calls().chain(stippled)) + extent.pixel_count() * 4 * 12,
-            written_bytes: drawn.description.bytes()
-                + if self.prepass.is_some() { 0 } else { self.depth.description.bytes() },
-            invocations: None,
+            // Each pixel once: overdraw depends on the view.
+            written_bytes: Some(
+                drawn.description.bytes() + if self.prepass.is_some() { 0 } else { self.depth.description.bytes() },
+            ),
+            ..Traffic::default()
         };
         if let Some(prepass) = &self.prepass {
             prepass.record(cmd, NAME, frame, scene, &self.solid, (&self.depth, DepthBegins::Far))?;

@@ -56,10 +56,12 @@ impl Composite {
     ) -> Result<Edge<'a, GBuffer>> {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
+        let threads = u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels));
+        let light_bytes = if self.params.direct_full == 0 { Some(0) } else { direct.resource.read_bytes(threads) };
         let traffic = Traffic {
-            read_bytes: pixels * (gbuffer.resource.shading_bytes() + 8),
-            written_bytes: pixels * 16,
-            invocations: Some(u64::from(extent.width) * u64::from(extent.height.div_ceil(self.texels))),
+            read_bytes: light_bytes.map(|bytes| pixels * (gbuffer.resource.shading_bytes() + 8) + bytes),
+            written_bytes: Some(pixels * 16),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{NAME}.composite"), traffic, |cmd| {
             cmd.barriers(gbuffer.shading_to_sampled());

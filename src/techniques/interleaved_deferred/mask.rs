@@ -93,7 +93,7 @@ impl Mask {
             MaskKind::Stencil => pixels * u64::from(bit_count) / 2,
             MaskKind::Depth => pixels * 4,
         };
-        let traffic = Traffic { read_bytes: 0, written_bytes, invocations: None };
+        let traffic = Traffic { read_bytes: Some(0), written_bytes: Some(written_bytes), invocations: None };
         cmd.pass(&format!("{NAME}.mask"), traffic, |cmd| {
             cmd.barriers([self.image.discard(Access::DepthWrite)]);
             cmd.begin_rendering(mapping.extent(), &[], Some((&self.image, Some(0.0), Access::DepthWrite)));

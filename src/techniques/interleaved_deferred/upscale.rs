@@ -27,7 +27,8 @@ impl Upscale {
         irradiance: &Buffer,
     ) -> Result<()> {
         let pixels = u64::from(mapping.width_px) * u64::from(mapping.height_px);
-        let traffic = Traffic { read_bytes: 4 * pixels * 8, written_bytes: pixels * 8, invocations: Some(pixels) };
+        let traffic =
+            Traffic { read_bytes: Some(4 * pixels * 8), written_bytes: Some(pixels * 8), invocations: Some(pixels) };
         cmd.pass(&format!("{NAME}.upscale"), traffic, |cmd| {
             cmd.barriers([source.to(Access::ComputeRead), irradiance.discard(Access::ComputeWrite)]);
             let bound = [("Source", Bound::Buffer(source.resource)), ("Irradiance", Bound::Buffer(irradiance))];

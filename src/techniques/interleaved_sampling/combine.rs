@@ -96,8 +96,8 @@ impl Combine {
             Way::Stippled { .. } => self.frame.pixel_count(),
         };
         let traffic = Traffic {
-            read_bytes: samples * (TEXEL_BYTES + SUM_BYTES),
-            written_bytes: samples * SUM_BYTES,
+            read_bytes: Some(samples * (TEXEL_BYTES + SUM_BYTES)),
+            written_bytes: Some(samples * SUM_BYTES),
             invocations: Some(invocations),
         };
         let params = bytemuck::bytes_of(&table.params);

@@ -39,7 +39,7 @@ impl Mask {
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, table: &Table, depth: &Image) -> Result<()> {
         let bytes = depth.description.bytes();
-        let traffic = Traffic { read_bytes: 0, written_bytes: bytes, invocations: Some(bytes / 4) };
+        let traffic = Traffic { read_bytes: Some(0), written_bytes: Some(bytes), invocations: Some(bytes / 4) };
         cmd.pass(&format!("{NAME}.mask"), traffic, |cmd| {
             cmd.barriers([depth.discard(Access::DepthWrite)]);
             cmd.begin_rendering(depth.description.extent, &[], Some((depth, Some(0.0), Access::DepthWrite)));

@@ -59,8 +59,8 @@ impl Mean {
         let pixels = extent.pixel_count() / u64::from(self.params.last_member + 1);
         let source_bytes = if self.sources.is_some() { 4 } else { 0 };
         let traffic = Traffic {
-            read_bytes: pixels * (16 + source_bytes),
-            written_bytes: pixels * 16,
+            read_bytes: Some(pixels * (16 + source_bytes)),
+            written_bytes: Some(pixels * 16),
             invocations: Some(extent.pixel_count()),
         };
         cmd.pass(&format!("{NAME}.mean"), traffic, |cmd| {

@@ -195,8 +195,7 @@ impl Slices {
         depth: Edge<'_, Image>,
         drawn: Edge<'_, Image>,
     ) -> Result<()> {
-        let traffic = Traffic { read_bytes: self.layer.description.bytes(), written_bytes: 0, invocations: None };
-        cmd.pass(&format!("{NAME}.slices"), traffic, |cmd| {
+        cmd.pass(&format!("{NAME}.slices"), Traffic::default(), |cmd| {
             cmd.barriers([depth.to(Access::DepthTest), drawn.to(Access::ColorWrite)]);
             cmd.barriers([self.layer.discard(Access::ColorWrite)]);
             let planes = self.params.plane_count;

@@ -91,7 +91,7 @@ impl HostSteps {
         let mut pairs = vec![(&self.irradiance, &buffers.irradiance), (&self.rays, &buffers.rays)];
         pairs.extend(self.guidance.as_ref().map(|Guidance { staged, own }| (staged, own)));
         let bytes = pairs.iter().map(|(staged, _)| staged.borrow().bytes).sum();
-        let traffic = Traffic { read_bytes: bytes, written_bytes: bytes, invocations: None };
+        let traffic = Traffic { read_bytes: Some(bytes), written_bytes: Some(bytes), invocations: None };
         cmd.pass(&buffers.label("upload"), traffic, |cmd| {
             cmd.barriers(pairs.iter().map(|(_, target)| target.discard(Access::TransferWrite)));
             pairs.iter().for_each(|(staged, target)| cmd.copy_buffer(&staged.borrow(), target));

@@ -23,7 +23,6 @@ use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPip
 use crate::gpu::sampler::Sampler;
 use crate::gpu::shader::Shader;
 use crate::gpu::{Access, Bound, Buffer, ColorTarget, Commands, Edge, Gpu, Image, ImageDescription, Layers, Traffic};
-use crate::passes::mesh;
 use crate::passes::shadow_maps::ShadowMaps;
 use crate::plan::{Plan, Resources, Shape};
 use crate::resident::{DrawList, SceneGpu};
@@ -164,13 +163,11 @@ impl Baseline {
         counters: &Buffer,
     ) -> Result<()> {
         let description = self.colors.description;
-        let [textures_read, textures_written] =
-            self.textures.as_ref().map_or([0; 2], |textures| textures.traffic(inputs));
+        let owner_bytes = self.textures.as_ref().map_or(0, |textures| textures.owner_bytes(inputs));
         let traffic = Traffic {
-            read_bytes: u64::from(description.layers()) * mesh::read_bytes(inputs.scene, inputs.list.calls())
-                + textures_read,
-            written_bytes: description.bytes() + self.depth.description.bytes() + textures_written,
-            invocations: None,
+            // Of textures those that own a texel beside it; shading itself is counted after the frame.
+            written_bytes: Some(description.bytes() + self.depth.description.bytes() + owner_bytes),
+            ..Traffic::default()
         };
         cmd.pass(&full(self.shading.pass()), traffic, |cmd| {
             cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));

@@ -31,8 +31,8 @@ impl SampleEntries {
     ) -> Result<()> {
         let samples = seen.resource;
         let traffic = Traffic {
-            read_bytes: samples.spids.description.bytes(),
-            written_bytes: colors.bytes,
+            read_bytes: Some(samples.spids.description.bytes()),
+            written_bytes: Some(colors.bytes),
             invocations: Some(samples.count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

@@ -38,8 +38,7 @@ impl ShadeEntries {
     ) -> Result<()> {
         let ShadingEdges { colors, counters, maps } = edges;
         // Entries are counted after the frame.
-        let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
-        cmd.pass(&full(self.pass), traffic, |cmd| {
+        cmd.pass(&full(self.pass), Traffic::default(), |cmd| {
             cmd.barriers(inputs.scales_to(Access::ComputeRead));
             cmd.barriers(maps.and_then(|maps| maps.to(Access::ComputeSample)));
             cmd.barriers([colors, counters].map(|edge| edge.to(Access::ComputeWrite)));

@@ -63,9 +63,9 @@ impl Sort {
         let places: u64 = self.threads.into_iter().map(u64::from).product();
         let traffic = Traffic {
             // Twice where all places are used.
-            read_bytes: 2 * places * COLOR_BYTES,
+            read_bytes: Some(2 * places * COLOR_BYTES),
             // Counted after the frame.
-            written_bytes: 0,
+            written_bytes: None,
             invocations: Some(2 * places + u64::from(self.material_count)),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

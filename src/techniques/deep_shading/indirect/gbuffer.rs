@@ -40,8 +40,7 @@ impl Gbuffer {
         colors: Edge<'_, Buffer>,
     ) -> Result<()> {
         // Entries are counted after the frame.
-        let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
-        cmd.pass(&full(PASS), traffic, |cmd| {
+        cmd.pass(&full(PASS), Traffic::default(), |cmd| {
             cmd.barriers(entries.entries.iter().map(|buffer| buffer.discard(Access::ComputeWrite)));
             cmd.barriers(inputs.scales_to(Access::ComputeRead));
             cmd.barriers([colors.to(Access::ComputeRead)]);

@@ -36,9 +36,9 @@ impl Memoise {
     ) -> Result<()> {
         let samples = seen.resource;
         let traffic = Traffic {
-            read_bytes: samples.spids.description.bytes(),
+            read_bytes: Some(samples.spids.description.bytes()),
             // Entries are counted after the frame.
-            written_bytes: entries.pointers.bytes,
+            written_bytes: None,
             invocations: Some(samples.count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

@@ -42,8 +42,7 @@ impl Shade {
     ) -> Result<()> {
         let ShadingEdges { colors, counters, maps } = edges;
         // Entries are counted after the frame.
-        let traffic = Traffic { read_bytes: 0, written_bytes: 0, invocations: None };
-        cmd.pass(&full("indirect.shade"), traffic, |cmd| {
+        cmd.pass(&full("indirect.shade"), Traffic::default(), |cmd| {
             cmd.barriers(maps.and_then(|maps| maps.to(Access::ComputeSample)));
             cmd.barriers(made.to(Access::ComputeRead));
             cmd.barriers([colors, counters].map(|edge| edge.to(Access::ComputeWrite)));

@@ -33,8 +33,8 @@ impl Address {
         let spids = &samples.spids;
         let addresses = lists.addresses.as_ref().expect("only with --address-buffer on");
         let traffic = Traffic {
-            read_bytes: spids.description.bytes(),
-            written_bytes: addresses.bytes,
+            read_bytes: Some(spids.description.bytes()),
+            written_bytes: Some(addresses.bytes),
             invocations: Some(samples.count()),
         };
         cmd.pass(&full("lists.address"), traffic, |cmd| {

@@ -34,9 +34,7 @@ impl Compact {
         space: Extent,
     ) -> Result<()> {
         let lists = inserted.lists;
-        let begin_bytes = lists.begins.bytes;
-        let traffic =
-            Traffic { read_bytes: begin_bytes, written_bytes: begin_bytes, invocations: Some(space.pixel_count()) };
+        let traffic = Traffic { invocations: Some(space.pixel_count()), ..Traffic::default() };
         cmd.pass(&full("lists.compact"), traffic, |cmd| {
             let links = [&lists.begins, &lists.nodes].map(|buffer| buffer.from(inserted.links));
             cmd.barriers(links.into_iter().chain([colors, counters]).map(|edge| edge.to(Access::ComputeWrite)));

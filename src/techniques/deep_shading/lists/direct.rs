@@ -210,7 +210,7 @@ impl HostInsertion {
         let copied =
             || [&lists.begins, &lists.nodes, colors].into_iter().chain(others.into_iter().flatten()).chain([counters]);
         let bytes = copied().map(|buffer| buffer.bytes).sum();
-        let traffic = Traffic { read_bytes: bytes, written_bytes: bytes, invocations: None };
+        let traffic = Traffic { read_bytes: Some(bytes), written_bytes: Some(bytes), invocations: None };
         cmd.pass(&full("lists"), traffic, |cmd| {
             cmd.barriers(copied().map(|buffer| buffer.discard(Access::TransferWrite)));
             copied().zip(&self.staged).for_each(|(buffer, staged)| cmd.copy_buffer(&staged.borrow(), buffer));

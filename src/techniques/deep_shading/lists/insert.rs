@@ -46,17 +46,7 @@ impl Insert {
     ) -> Result<()> {
         let samples = seen.resource;
         let spids = &samples.spids;
-        let traffic = Traffic {
-            // What walks read beside is counted after the frame.
-            read_bytes: spids.description.bytes()
-                + samples.shading_depths().map_or(0, |image| image.description.bytes()),
-            written_bytes: [Some(&lists.begins), lists.addresses.as_ref(), lists.zmax.as_ref(), lists.marks.as_ref()]
-                .into_iter()
-                .flatten()
-                .map(|buffer| buffer.bytes)
-                .sum(),
-            invocations: Some(samples.count()),
-        };
+        let traffic = Traffic { invocations: Some(samples.count()), ..Traffic::default() };
         cmd.pass(&full("lists"), traffic, |cmd| {
             let words = [(Some(&lists.begins), 0), (lists.zmax.as_ref(), NEAREST_DEPTH), (lists.marks.as_ref(), 0)];
             let filled: Vec<(&Buffer, u32)> =

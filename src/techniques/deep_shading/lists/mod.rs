@@ -110,9 +110,4 @@ impl Lists {
         let access = access.into();
         ListsEdge { lists: self, links: access, addresses: access, zmax_and_marks: access }
     }
-
-    /// Bytes of nodes and begins, which a pass over all of them reads.
-    pub fn link_bytes(&self) -> u64 {
-        self.links().map(|buffer| buffer.bytes).sum()
-    }
 }

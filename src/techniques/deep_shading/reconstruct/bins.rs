@@ -32,8 +32,8 @@ impl Bins {
     ) -> Result<()> {
         // Depths, and then all.
         let traffic = Traffic {
-            read_bytes: buffers.vectors.bytes + buffers.sample_bytes(),
-            written_bytes: buffers.bins.bytes,
+            read_bytes: Some(buffers.vectors.bytes + buffers.sample_bytes()),
+            written_bytes: Some(buffers.bins.bytes),
             invocations: Some(u64::from(across) * u64::from(down) * u64::from(self.pipeline.workgroup[0])),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

@@ -33,8 +33,8 @@ impl Layers {
     ) -> Result<()> {
         // A tile's bins and those of the eight around it, twice.
         let traffic = Traffic {
-            read_bytes: 18 * buffers.bins.bytes,
-            written_bytes: buffers.tiles.bytes,
+            read_bytes: Some(18 * buffers.bins.bytes),
+            written_bytes: Some(buffers.tiles.bytes),
             invocations: Some(u64::from(across) * u64::from(down) * u64::from(self.pipeline.workgroup[0])),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

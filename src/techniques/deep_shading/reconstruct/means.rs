@@ -33,8 +33,8 @@ impl Means {
         frame: Extent,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: buffers.sample_bytes() + buffers.tiles.bytes,
-            written_bytes: buffers.means.bytes,
+            read_bytes: Some(buffers.sample_bytes() + buffers.tiles.bytes),
+            written_bytes: Some(buffers.means.bytes),
             invocations: Some(frame.pixel_count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

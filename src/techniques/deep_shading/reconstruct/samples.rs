@@ -41,8 +41,8 @@ impl Gather {
         frame: Extent,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: shaded.bytes(),
-            written_bytes: buffers.sample_bytes(),
+            read_bytes: Some(shaded.bytes()),
+            written_bytes: Some(buffers.sample_bytes()),
             invocations: Some(frame.pixel_count()),
         };
         cmd.pass(&full(PASS), traffic, |cmd| {

@@ -94,18 +94,8 @@ impl Shade {
     ) -> Result<()> {
         let DrawInputs { scene, list, primitives, .. } = inputs;
         let (ShadingEdges { colors, counters, maps }, lists) = (edges, listed.lists);
-        let copied_bytes = self.depth.as_ref().map_or(0, |depth| depth.description.bytes());
-        let traffic = Traffic {
-            // Vertices are an upper bound: those of triangles without a list may stay unread.
-            read_bytes: mesh::read_bytes(scene, list.calls())
-                + lists.link_bytes()
-                + copied_bytes
-                + lists.marks.as_ref().map_or(0, |marks| marks.bytes),
-            // Colours are counted after the frame.
-            written_bytes: copied_bytes,
-            invocations: None,
-        };
-        cmd.pass(&full("shade"), traffic, |cmd| {
+        // Fragments that find their triangle in a list are counted after the frame.
+        cmd.pass(&full("shade"), Traffic::default(), |cmd| {
             cmd.barriers(inputs.scales_to(Access::GraphicsRead));
             cmd.barriers(maps.and_then(|maps| maps.to(Access::FragmentSample)));
             cmd.barriers(listed.links_to(Access::GraphicsRead));

@@ -72,7 +72,7 @@ impl SampleRasterizer {
                 [u64::from(rounds) * mesh::read_bytes(inputs.scene, inputs.list.calls()), 0]
             }
         };
-        Traffic { read_bytes: read, written_bytes: samples.bytes() + written, invocations: None }
+        Traffic { read_bytes: Some(read), written_bytes: Some(samples.bytes() + written), invocations: None }
     }
 }
 

@@ -41,7 +41,8 @@ impl Pack {
         let extent = l_buffer.description.extent;
         let pixels = extent.pixel_count();
         let read_bytes = self.sums.iter().map(|sums| sums.description.bytes()).sum();
-        let traffic = Traffic { read_bytes, written_bytes: pixels * 8, invocations: Some(pixels) };
+        let traffic =
+            Traffic { read_bytes: Some(read_bytes), written_bytes: Some(pixels * 8), invocations: Some(pixels) };
         cmd.pass(&format!("{NAME}.pack"), traffic, |cmd| {
             cmd.barriers(self.sums.iter().map(|sums| sums.from(Access::ColorWrite).to(Access::ComputeSample)));
             cmd.barriers([l_buffer.discard(Access::ComputeWrite)]);

@@ -46,8 +46,9 @@ impl Tiled {
         let extent = geometry.resource.extent();
         let columns = extent.height.div_ceil(self.texels);
         let traffic = Traffic {
-            read_bytes: extent.pixel_count() * geometry.resource.lit_bytes(),
-            written_bytes: extent.pixel_count() * 8,
+            // Tiles decide how many lights are read.
+            read_bytes: None,
+            written_bytes: Some(extent.pixel_count() * 8),
             invocations: Some(u64::from(extent.width) * u64::from(columns)),
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {

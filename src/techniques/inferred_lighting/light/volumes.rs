@@ -187,8 +187,8 @@ impl LightVolumes {
         let bytes_of = |target: &Image| u64::from(crate::gpu::image::texel_bytes(target.description.format));
         let texel_bytes: u64 = targets.iter().map(bytes_of).sum();
         let traffic = Traffic {
-            read_bytes: self.drawn_texels() * (geometry.resource.lit_bytes() + texel_bytes),
-            written_bytes: self.drawn_texels() * texel_bytes,
+            read_bytes: Some(self.drawn_texels() * (geometry.resource.lit_bytes() + texel_bytes)),
+            written_bytes: Some(self.drawn_texels() * texel_bytes),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.light"), traffic, |cmd| {

@@ -36,8 +36,11 @@ impl Mean {
     ) -> Result<()> {
         let MappingParams { width_px, height_px, .. } = self.mapping;
         let pixels = u64::from(width_px) * u64::from(height_px);
-        let traffic =
-            Traffic { read_bytes: 2 * pixels * SUM_BYTES, written_bytes: pixels * 8, invocations: Some(pixels) };
+        let traffic = Traffic {
+            read_bytes: Some(2 * pixels * SUM_BYTES),
+            written_bytes: Some(pixels * 8),
+            invocations: Some(pixels),
+        };
         let [even_weight, odd_weight] = weights;
         let params = RunMeanParams { mapping: self.mapping, even_weight, odd_weight };
         cmd.pass(&pass(), traffic, |cmd| {

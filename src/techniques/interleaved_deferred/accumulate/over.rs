@@ -35,8 +35,8 @@ impl Over {
         let extent = color.resource.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * (2 * SUM_BYTES + 16),
-            written_bytes: pixels * 16,
+            read_bytes: Some(pixels * (2 * SUM_BYTES + 16)),
+            written_bytes: Some(pixels * 16),
             invocations: Some(pixels),
         };
         let [even_weight, odd_weight] = weights;

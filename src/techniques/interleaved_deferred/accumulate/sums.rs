@@ -44,8 +44,8 @@ impl Sums {
         let sum_bytes = if layer.is_some() { 2 * SUM_BYTES } else { SUM_BYTES };
         let layer_bytes = if layer.is_some() { 16 } else { 0 };
         let traffic = Traffic {
-            read_bytes: pixels * (8 + layer_bytes + sum_bytes),
-            written_bytes: pixels * sum_bytes,
+            read_bytes: Some(pixels * (8 + layer_bytes + sum_bytes)),
+            written_bytes: Some(pixels * sum_bytes),
             invocations: Some(pixels),
         };
         let (half, is_first) = (run % 2, u32::from(run < 2));

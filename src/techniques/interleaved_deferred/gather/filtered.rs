@@ -45,8 +45,8 @@ impl GatherFiltered {
         let thread_count = u64::from(threads[0]) * u64::from(threads[1]);
         let window = u64::from(self.texels + 2 * self.kernel.radius());
         let traffic = Traffic {
-            read_bytes: thread_count * window * (8 + 4),
-            written_bytes: mapping.extent().pixel_count() * 8,
+            read_bytes: Some(thread_count * window * (8 + 4)),
+            written_bytes: Some(mapping.extent().pixel_count() * 8),
             invocations: Some(thread_count),
         };
         cmd.pass(&format!("{NAME}.gather"), traffic, |cmd| {

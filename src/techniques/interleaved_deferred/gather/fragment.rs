@@ -68,8 +68,8 @@ impl LastProgram {
     ) -> Result<()> {
         let pixels = mapping.extent().pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * (8 + lookup::TEXEL_BYTES) + self.drawn.bytes(),
-            written_bytes: pixels * 8 + self.drawn.bytes(),
+            read_bytes: Some(pixels * (8 + lookup::TEXEL_BYTES) + self.drawn.bytes()),
+            written_bytes: Some(pixels * 8 + self.drawn.bytes()),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {
@@ -134,8 +134,11 @@ impl FragmentGatherBlocks {
         irradiance: &Buffer,
     ) -> Result<()> {
         let texels = mapping.texel_count();
-        let traffic =
-            Traffic { read_bytes: texels * (8 + lookup::TEXEL_BYTES), written_bytes: texels * 8, invocations: None };
+        let traffic = Traffic {
+            read_bytes: Some(texels * (8 + lookup::TEXEL_BYTES)),
+            written_bytes: Some(texels * 8),
+            invocations: None,
+        };
         cmd.pass(&format!("{NAME}.gather.translate"), traffic, |cmd| {
             cmd.barriers([source.to(Access::FragmentSample), self.between.discard(Access::ColorWrite)]);
             // Every texel is drawn: a clear spares the load.

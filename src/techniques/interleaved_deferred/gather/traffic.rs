@@ -6,7 +6,7 @@ use crate::gpu::shader::structs::MappingParams;
 /// Bytes of a pass from `source_texels` to `target_texels`.
 pub fn moved(source_texels: u64, target_texels: u64, threads: [u32; 3]) -> Traffic {
     let invocations = Some(threads.iter().map(|side| u64::from(*side)).product());
-    Traffic { read_bytes: source_texels * 8, written_bytes: target_texels * 8, invocations }
+    Traffic { read_bytes: Some(source_texels * 8), written_bytes: Some(target_texels * 8), invocations }
 }
 
 /// Bytes of a pass that ends in frame order: what is pulled comes with the padding of the rows, what is pushed reads

@@ -36,8 +36,10 @@ impl ShadeBranch {
         let extent = gbuffer.resource.extent();
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts),
-            written_bytes: pixels * 8,
+            read_bytes: shade
+                .read_bytes(direct, shade.mapping().subset_count(), pixels, pixels)
+                .map(|bytes| pixels * gbuffer.resource.parts_bytes(shade.parts) + bytes),
+            written_bytes: Some(pixels * 8),
             invocations: Some(pixels),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {

@@ -49,7 +49,12 @@ impl ShadeDrawn {
     ) -> Result<()> {
         let mapping = shade.mapping();
         let texels = mapping.texel_count();
-        let traffic = Traffic { read_bytes: texels * self.texel_bytes, written_bytes: texels * 8, invocations: None };
+        let light_bytes = shade.read_bytes(direct, mapping.subset_count(), texels, texels);
+        let traffic = Traffic {
+            read_bytes: light_bytes.map(|bytes| texels * self.texel_bytes + bytes),
+            written_bytes: Some(texels * 8),
+            invocations: None,
+        };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(split.to(shade.parts, Access::FragmentSample));
             cmd.barriers(shade.hidden_to(Access::GraphicsRead));

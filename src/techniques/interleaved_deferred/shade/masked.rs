@@ -65,8 +65,10 @@ impl ShadeMasked {
         let tested_bytes = u64::from(mapping.subset_count()) * pixels * mask.resource.kind.tested_bytes();
         let traffic = Traffic {
             // Every draw tests every pixel; each pixel is shaded once.
-            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts) + tested_bytes + self.drawn.bytes(),
-            written_bytes: pixels * 8 + self.drawn.bytes(),
+            read_bytes: shade.read_bytes(direct, mapping.subset_count(), pixels, pixels).map(|bytes| {
+                pixels * gbuffer.resource.parts_bytes(shade.parts) + bytes + tested_bytes + self.drawn.bytes()
+            }),
+            written_bytes: Some(pixels * 8 + self.drawn.bytes()),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {

@@ -43,7 +43,9 @@ pub fn plan(plan: &mut Plan, vpl_count: u32, joined_count: u32, subset_count: u3
 /// The lists on the device.
 pub struct ShadeGpu {
     pub vpls: Buffer,
+    vpl_count: u32,
     subset_lights: Buffer,
+    joined_count: u32,
     pub subsets: Buffer,
     /// Which of them a pixel does not see, where that is looked for.
     pub hidden: Option<Buffer>,
@@ -70,12 +72,24 @@ impl ShadeGpu {
         let words_a_point = params.words_a_point;
         Ok(Self {
             vpls: filled("vpls", bytemuck::cast_slice(&lights.vpls))?,
+            vpl_count: lights.vpls.len() as u32,
             subset_lights: filled("subset_lights", bytemuck::cast_slice(&lights.lights))?,
+            joined_count: lights.lights.len() as u32,
             subsets: filled("subsets", bytemuck::cast_slice(&lights.subsets))?,
             hidden: (words_a_point > 0).then(|| resources.buffer(HIDDEN)),
             params,
             parts,
         })
+    }
+
+    /// Bytes that shading reads of the lights: so many threads, spread evenly over `subset_count` of the subsets, each of its own
+    /// subset's, and of so many points what they do not see. None where shadow rays decide.
+    fn read_bytes(&self, direct: &DirectGpu, subset_count: u32, threads: u64, points: u64) -> Option<u64> {
+        let is_known = self.joined_count == 0 || !direct.casts_rays;
+        let light_bytes = u64::from(self.vpl_count) * size_of::<VplBlock>() as u64
+            + u64::from(self.joined_count) * size_of::<LightBlock>() as u64;
+        let hidden_bytes = points * u64::from(self.params.words_a_point) * 4;
+        is_known.then(|| threads * light_bytes / u64::from(subset_count) + hidden_bytes)
     }
 
     /// What is hidden becomes readable as `access` says, where it was found.

@@ -46,10 +46,12 @@ impl ShadeStrided {
     ) -> Result<()> {
         let mapping = shade.mapping();
         let pixels = gbuffer.resource.extent().pixel_count();
+        let threads = self.listed.invocations(mapping.subset_count());
+        let light_bytes = shade.read_bytes(direct, mapping.subset_count(), threads, pixels);
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.parts_bytes(shade.parts),
-            written_bytes: pixels * 8,
-            invocations: Some(self.listed.invocations(mapping.subset_count())),
+            read_bytes: light_bytes.map(|bytes| pixels * gbuffer.resource.parts_bytes(shade.parts) + bytes),
+            written_bytes: Some(pixels * 8),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.parts_to(shade.parts, Access::ComputeSample));

@@ -37,10 +37,12 @@ impl ShadeSubBuffers {
     ) -> Result<()> {
         let mapping = shade.mapping();
         let texels = mapping.texel_count();
+        let threads = self.listed.invocations(mapping.subset_count());
+        let light_bytes = shade.read_bytes(direct, mapping.subset_count(), threads, texels);
         let traffic = Traffic {
-            read_bytes: texels * self.texel_bytes,
-            written_bytes: texels * 8,
-            invocations: Some(self.listed.invocations(mapping.subset_count())),
+            read_bytes: light_bytes.map(|bytes| texels * self.texel_bytes + bytes),
+            written_bytes: Some(texels * 8),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(split.to(shade.parts, self.storage.read(Stage::Compute)));

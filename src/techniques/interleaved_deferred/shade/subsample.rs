@@ -33,10 +33,14 @@ impl ShadeSubsample {
     ) -> Result<()> {
         let mapping = shade.mapping();
         let cells = mapping.sub_texel_count();
+        let threads = self.listed.invocations(1);
         let traffic = Traffic {
-            read_bytes: cells * gbuffer.resource.parts_bytes(shade.parts),
-            written_bytes: cells * 8,
-            invocations: Some(self.listed.invocations(1)),
+            // The one subset has all lights.
+            read_bytes: shade
+                .read_bytes(direct, 1, threads, cells)
+                .map(|bytes| cells * gbuffer.resource.parts_bytes(shade.parts) + bytes),
+            written_bytes: Some(cells * 8),
+            invocations: Some(threads),
         };
         cmd.pass(&format!("{NAME}.shade"), traffic, |cmd| {
             cmd.barriers(gbuffer.parts_to(shade.parts, Access::ComputeSample));

@@ -68,8 +68,8 @@ impl Program {
         target: &Surface,
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: source.texels * source.texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES,
-            written_bytes: mapping.texel_count() * target.texel_bytes,
+            read_bytes: Some(source.texels * source.texel_bytes + mapping.texel_count() * lookup::TEXEL_BYTES),
+            written_bytes: Some(mapping.texel_count() * target.texel_bytes),
             invocations: None,
         };
         cmd.pass(&format!("{NAME}.{pass}"), traffic, |cmd| {

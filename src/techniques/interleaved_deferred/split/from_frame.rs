@@ -12,7 +12,7 @@ use crate::techniques::interleaved_deferred::sub_buffers::Surface;
 /// written.
 pub fn copied(mapping: &MappingParams, texel_bytes: [u64; 2], invocations: u64) -> Traffic {
     let [read_bytes, written_bytes] = texel_bytes.map(|bytes| mapping.texel_count() * bytes);
-    Traffic { read_bytes, written_bytes, invocations: Some(invocations) }
+    Traffic { read_bytes: Some(read_bytes), written_bytes: Some(written_bytes), invocations: Some(invocations) }
 }
 
 /// A compute shader from the G-buffer, dispatched.

@@ -145,11 +145,13 @@ impl HiddenByMaps {
         let lights = || turn.first..turn.end;
         let drawn = || lights().flat_map(|light| &faces[light as usize]);
         let traffic = Traffic {
-            read_bytes: drawn()
-                .flat_map(|face| [&face.casters.fine, &face.casters.coarse])
-                .map(|list| mesh::depth_bytes(scene, list))
-                .sum(),
-            written_bytes: self.depth.description.bytes(),
+            read_bytes: Some(
+                drawn()
+                    .flat_map(|face| [&face.casters.fine, &face.casters.coarse])
+                    .map(|list| mesh::depth_bytes(scene, list))
+                    .sum(),
+            ),
+            written_bytes: Some(self.depth.description.bytes()),
             invocations: None,
         };
         let (atlas, face_count) = (&self.maps.atlas, self.maps.atlas.face_count());
@@ -224,8 +226,9 @@ impl HiddenByMaps {
         let groups = [self.groups[0], word_end - word_first, subset_end - subset_first];
         let invocations: u64 = groups.iter().chain(&self.compare.workgroup).map(|count| u64::from(*count)).product();
         let traffic = Traffic {
-            read_bytes: invocations * gbuffer.resource.surface_bytes() + hidden.bytes,
-            written_bytes: hidden.bytes,
+            // Where lights look decides what is read of their maps.
+            read_bytes: None,
+            written_bytes: Some(hidden.bytes),
             invocations: Some(invocations),
         };
         cmd.pass(&finding_pass(turn), traffic, |cmd| {

@@ -41,11 +41,8 @@ impl HiddenByRays {
     ) -> Result<()> {
         let invocations: u64 =
             self.groups.iter().chain(&self.pipeline.workgroup).map(|count| u64::from(*count)).product();
-        let traffic = Traffic {
-            read_bytes: invocations * gbuffer.resource.surface_bytes(),
-            written_bytes: 2 * hidden.bytes,
-            invocations: Some(invocations),
-        };
+        let traffic =
+            Traffic { read_bytes: None, written_bytes: Some(2 * hidden.bytes), invocations: Some(invocations) };
         cmd.pass(&format!("{NAME}.vpl_shadow"), traffic, |cmd| {
             clear(cmd, hidden);
             cmd.barriers(gbuffer.surface_to_sampled());

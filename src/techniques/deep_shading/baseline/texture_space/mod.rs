@@ -29,7 +29,6 @@ use super::super::choices::Choices;
 use super::super::visibility::sample::{PipelineSets, TupleDraws};
 use crate::error::Result;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, upload};
-use crate::passes::mesh;
 use crate::plan::{Plan, Resources};
 use crate::resident::{DrawList, SceneGpu};
 use crate::techniques::Inputs;
@@ -157,11 +156,9 @@ impl TextureSpace {
         self.pool.touched_bytes(gpu, draws_of(list).len())
     }
 
-    /// Bytes of vertices and texels that claims and shading read and write, but for shading itself, which is counted after the frame.
-    pub fn traffic(&self, inputs: DrawInputs<'_>) -> [u64; 2] {
-        let read = 2 * mesh::read_bytes(inputs.scene, inputs.list.calls());
-        let chunks = draws_of(inputs.list).len() as u64;
-        [read, chunks * self.pool.owner_bytes()]
+    /// Bytes of texels' owners that claims write.
+    pub fn owner_bytes(&self, inputs: DrawInputs<'_>) -> u64 {
+        draws_of(inputs.list).len() as u64 * self.pool.owner_bytes()
     }
 }
 

@@ -129,7 +129,7 @@ impl Rays {
         let staged = [Some(&self.spids), self.shading_depths.as_ref()].into_iter().flatten();
         let pairs: Vec<(&RefCell<Buffer>, &Image)> = staged.zip(samples.colors()).collect();
         let bytes = pairs.iter().map(|(_, image)| image.description.bytes()).sum();
-        let traffic = Traffic { read_bytes: bytes, written_bytes: bytes, invocations: None };
+        let traffic = Traffic { read_bytes: Some(bytes), written_bytes: Some(bytes), invocations: None };
         cmd.pass(&full("visibility"), traffic, |cmd| {
             begin_counters(cmd, counters);
             cmd.barriers(pairs.iter().map(|(_, image)| image.discard(Access::TransferWrite)));
