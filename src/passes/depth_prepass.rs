@@ -121,7 +121,7 @@ impl DepthPrepass {
         (depth, begins): (&Image, DepthBegins),
     ) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: Some(mesh::depth_bytes(scene, list)),
+            read_bytes: mesh::depth_bytes(list),
             written_bytes: Some(depth.description.bytes()),
             invocations: None,
         };

@@ -76,9 +76,9 @@ pub fn read_bytes<'a>(scene: &SceneGpu, calls: impl IntoIterator<Item = &'a Draw
     stream_bytes(vertex_buffers(scene), calls)
 }
 
-/// Bytes that a pass reads which writes depth alone: positions of what has no holes.
-pub fn depth_bytes(scene: &SceneGpu, list: &DrawList) -> u64 {
-    stream_bytes(POSITIONS, &list.opaque) + read_bytes(scene, &list.mask)
+/// Bytes that a pass reads which writes depth alone: positions. None where something has holes, which are looked up in textures.
+pub fn depth_bytes(list: &DrawList) -> Option<u64> {
+    list.mask.is_empty().then(|| stream_bytes(POSITIONS, &list.opaque))
 }
 
 /// Binds the scene's streams, inside rendering.

@@ -346,7 +346,6 @@ fn other_documents_have_their_keys_and_types() {
             ("command[]", "text"),
             ("image_hash", "hash"),
             ("pass_ms.*", "number"),
-            ("bytes_read", "count"),
             ("bytes_written", "count"),
             ("planned_bytes", "count"),
             ("counters.*", "number"),

@@ -347,7 +347,8 @@ fn bytes_of_simple_passes_are_their_texels() {
     assert_eq!(traffic_of(&report, "discontinuity")[1], PIXELS * 4);
     // Along the rows, and along the columns.
     assert_eq!(traffic_of(&report, "filter")[1], 2 * PIXELS * 8);
-    assert_eq!(traffic_of(&report, "composite")[..2], [PIXELS * 32, PIXELS * 16]);
+    // Tiles decide how many lights are read.
+    assert_eq!(traffic_of(&report, "composite")[..2], [0, PIXELS * 16]);
 
     let one_texel = ["--texels", "1", "--split", "subsample", "--position", "float", "--workgroup", "64x1"];
     let subsample = render(&program, LAMPS, INTERLEAVED, &one_texel);
@@ -442,9 +443,9 @@ fn a_benchmarks_row_is_its_frame() {
     assert_eq!(row["scene"]["hash"], report["scene"]["hash"]);
     assert_eq!(row["counters"], report["counters"]);
     let passes: Vec<&Value> = list(&report["passes"]).iter().filter(|pass| pass["where"].is_null()).collect();
-    for key in ["bytes_read", "bytes_written"] {
-        assert_eq!(count(&row[key]), passes.iter().map(|pass| count(&pass[key])).sum::<u64>(), "{key}");
-    }
+    assert_eq!(count(&row["bytes_written"]), passes.iter().map(|pass| count(&pass["bytes_written"])).sum::<u64>());
+    // Of the G-buffer's textures nobody knows without counting.
+    assert!(passes.iter().any(|pass| pass["bytes_read"].is_null()) && row["bytes_read"].is_null());
     let named: Vec<&str> = row["pass_ms"].as_object().unwrap().keys().map(String::as_str).collect();
     assert_eq!(named, passes.iter().map(|pass| text(&pass["name"])).collect::<Vec<_>>());
     require_spread(&row["frame_ms"], 2);

@@ -22,7 +22,7 @@ pub struct Touches {
 #[derive(Clone, Debug)]
 pub struct PassTouches {
     pub pass: String,
-    /// Of compute and fragment shaders.
+    /// Invocations of compute and fragment shaders.
     pub invocations: u64,
     pub resources: BTreeMap<String, Touches>,
     /// Resources that it touched in a way that nobody counts.

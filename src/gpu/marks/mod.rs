@@ -7,12 +7,12 @@
 
 pub mod counted;
 pub mod noted;
+mod sampling;
 pub mod shape;
 
 use super::description::VertexBuffer;
 use super::shader::gpu::marks::{
-    COMP_BOTH, COMP_OWN, MARK_ADDRESS_WORDS, MARK_ADDRESSES, MARK_BLENDS_LEVELS, MARK_COUNTS, MARK_EDGE,
-    MARK_INVOCATIONS, MARK_MAGNIFIES_LINEARLY, MARK_MINIFIES_LINEARLY, MARK_MIRROR, MARK_MOST_ADDRESSES, MARK_REPEAT,
+    COMP_BOTH, COMP_OWN, MARK_ADDRESS_WORDS, MARK_ADDRESSES, MARK_COUNTS, MARK_INVOCATIONS, MARK_MOST_ADDRESSES,
     MARK_SLOT_WORDS, MARK_SLOTS,
 };
 use super::shader::structs::MarkSlotBlock;
@@ -26,6 +26,7 @@ use crate::units::Bytes;
 use ash::vk;
 use ash::vk::Handle;
 use counted::FrameTouches;
+use sampling::Sampling;
 use shape::{Part, Shape, Texels};
 use std::collections::{BTreeMap, HashMap};
 use std::ptr::NonNull;
@@ -70,14 +71,6 @@ struct State {
 
 // SAFETY: the words lie in the allocation that the same struct keeps, and are read and written under its lock.
 unsafe impl Send for State {}
-
-/// What of a sampler says which texels it reads.
-#[derive(Clone, Copy)]
-struct Sampling {
-    wraps: u32,
-    filters: u32,
-    levels: [f32; 2],
-}
 
 /// A resource's record. It returns when the resource goes.
 pub struct Marked {
@@ -277,18 +270,7 @@ impl Marks {
     }
 
     pub fn sampler(&self, handle: vk::Sampler, info: &vk::SamplerCreateInfo<'_>) {
-        let wrap = |mode| match mode {
-            vk::SamplerAddressMode::REPEAT => MARK_REPEAT,
-            vk::SamplerAddressMode::MIRRORED_REPEAT => MARK_MIRROR,
-            _ => MARK_EDGE,
-        };
-        let [u, v, w] = [info.address_mode_u, info.address_mode_v, info.address_mode_w].map(wrap);
-        let flag = |is_set, flag| if is_set { flag } else { 0 };
-        let filters = flag(info.mag_filter == vk::Filter::LINEAR, MARK_MAGNIFIES_LINEARLY)
-            | flag(info.min_filter == vk::Filter::LINEAR, MARK_MINIFIES_LINEARLY)
-            | flag(info.mipmap_mode == vk::SamplerMipmapMode::LINEAR, MARK_BLENDS_LEVELS);
-        let sampling = Sampling { wraps: u | v << 4 | w << 8, filters, levels: [info.min_lod, info.max_lod] };
-        self.state().samplers.insert(handle.as_raw(), sampling);
+        self.state().samplers.insert(handle.as_raw(), Sampling::of(info));
     }
 
     /// Room for the slots of a set, one a binding below `BINDING`, and those of vertex streams.
@@ -464,8 +446,7 @@ impl Slots {
         assert!(slot < self.count, "slot {slot} of {}", self.count);
         let mut state = self.marks.state();
         let sampling = sampler.and_then(|sampler| state.samplers.get(&sampler.as_raw()).copied());
-        let Sampling { wraps, filters, levels: [least_level, most_level] } =
-            sampling.unwrap_or(Sampling { wraps: 0, filters: 0, levels: [0.0; 2] });
+        let Sampling { wraps, filters, levels: [least_level, most_level] } = sampling.unwrap_or_default();
         let common = MarkSlotBlock {
             record: word_of(marked.record),
             word_count: words_of(&marked.shape) as u32,

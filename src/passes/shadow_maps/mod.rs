@@ -131,7 +131,7 @@ impl ShadowMaps {
 
     fn record_all(&self, cmd: &mut Commands, technique: &str, scene: &SceneGpu) -> Result<()> {
         let traffic = Traffic {
-            read_bytes: Some(self.casters.iter().map(|casters| mesh::depth_bytes(scene, casters)).sum()),
+            read_bytes: self.casters.iter().map(mesh::depth_bytes).sum(),
             written_bytes: Some(self.depth.description.bytes()),
             invocations: None,
         };

@@ -165,7 +165,7 @@ impl Baseline {
         let description = self.colors.description;
         let owner_bytes = self.textures.as_ref().map_or(0, |textures| textures.owner_bytes(inputs));
         let traffic = Traffic {
-            // Of textures those that own a texel beside it; shading itself is counted after the frame.
+            // Textures of claims are owners alone; shading itself is counted after the frame.
             written_bytes: Some(description.bytes() + self.depth.description.bytes() + owner_bytes),
             ..Traffic::default()
         };

@@ -145,12 +145,10 @@ impl HiddenByMaps {
         let lights = || turn.first..turn.end;
         let drawn = || lights().flat_map(|light| &faces[light as usize]);
         let traffic = Traffic {
-            read_bytes: Some(
-                drawn()
-                    .flat_map(|face| [&face.casters.fine, &face.casters.coarse])
-                    .map(|list| mesh::depth_bytes(scene, list))
-                    .sum(),
-            ),
+            read_bytes: drawn()
+                .flat_map(|face| [&face.casters.fine, &face.casters.coarse])
+                .map(mesh::depth_bytes)
+                .sum(),
             written_bytes: Some(self.depth.description.bytes()),
             invocations: None,
         };
