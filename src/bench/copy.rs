@@ -1,6 +1,6 @@
 //! vkCmdCopyBuffer of as many bytes as a copying stage leaves: the limit of the machine's memory.
 
-use super::rounds::Probe;
+use super::rounds::{Probe, last_pass};
 use crate::error::Result;
 use crate::gpu::commands::{Submits, Traffic};
 use crate::gpu::recorded::Recorded;
@@ -54,9 +54,6 @@ impl BufferCopy {
 
 impl Probe for BufferCopy {
     fn measure(&self) -> Result<Vec<f64>> {
-        let frame = self.recorded.run()?;
-        let copy = frame.passes.last().expect("two passes");
-        let ns = copy.figure_ns(self.recorded.clock()).expect("a submit a pass has a wall time a pass");
-        Ok(vec![ns as f64 / 1e6])
+        last_pass(&self.recorded)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::stats::{median, paired_ratio};
 use crate::error::Result;
+use crate::gpu::recorded::Recorded;
 use crate::interrupt;
 
 /// Something whose time is taken.
@@ -10,6 +11,16 @@ pub trait Probe {
     ///
     /// Errors: the device fails (exit code 4).
     fn measure(&self) -> Result<Vec<f64>>;
+}
+
+/// Runs what was recorded with a submit a pass: milliseconds of its last pass, as a probe of one part.
+///
+/// Errors: the device fails (exit code 4).
+pub fn last_pass(recorded: &Recorded) -> Result<Vec<f64>> {
+    let frame = recorded.run()?;
+    let pass = frame.passes.last().expect("a pass was recorded");
+    let ns = pass.figure_ns(recorded.clock()).expect("a submit a pass has a wall time a pass");
+    Ok(vec![ns as f64 / 1e6])
 }
 
 /// What the rounds found of one probe.

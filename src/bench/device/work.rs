@@ -1,6 +1,6 @@
 //! One kind of work of `bench device`, recorded: a pass that fills its buffers, and the pass that is timed. Shader: device.comp.
 
-use crate::bench::rounds::Probe;
+use crate::bench::rounds::{Probe, last_pass};
 use crate::error::{Error, Result};
 use crate::gpu::commands::{Submits, Traffic};
 use crate::gpu::pipeline::ComputePipeline;
@@ -212,9 +212,6 @@ impl Worked {
 
 impl Probe for Worked {
     fn measure(&self) -> Result<Vec<f64>> {
-        let frame = self.recorded.run()?;
-        let pass = frame.passes.last().expect("two passes");
-        let ns = pass.figure_ns(self.recorded.clock()).expect("a submit a pass has a wall time a pass");
-        Ok(vec![ns as f64 / 1e6])
+        last_pass(&self.recorded)
     }
 }

@@ -10,7 +10,7 @@ mod host;
 mod query;
 pub mod report;
 
-use super::rounds::{self, Length, Probe, Samples};
+use super::rounds::{self, Length, Probe, Samples, last_pass};
 use crate::bvh::Bvh;
 use crate::bvh::flat::flattened;
 use crate::bvh::nodes::{Nodes, Walk};
@@ -283,9 +283,6 @@ impl DeviceWalk {
 
 impl Probe for DeviceWalk {
     fn measure(&self) -> Result<Vec<f64>> {
-        let frame = self.recorded.run()?;
-        let pass = frame.passes.first().expect("one pass");
-        let ns = pass.figure_ns(self.recorded.clock()).expect("a submit a pass has a wall time a pass");
-        Ok(vec![ns as f64 / 1e6])
+        last_pass(&self.recorded)
     }
 }
