@@ -1,4 +1,4 @@
-//! `quincunx bench locality`: what copies touch, and what caches make of it, counted without a device, beside measured times where there
+//! `quincunx bench locality`: what passes touch, and what caches make of it, counted without a device, beside measured times where there
 //! are some.
 
 use super::output::{self, print, print_text, quiet_flag};
@@ -10,24 +10,30 @@ use crate::bench::table::Table;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::interrupt;
-use crate::locality::case::{Case, PassCounts, cost, total};
+use crate::locality::case::{Case, GatherStage, SplitStage};
 use crate::locality::count::Counts;
 use crate::locality::drawn::{self, Summary};
+use crate::locality::filter::FilterCase;
+use crate::locality::insert::InsertCase;
 use crate::locality::machine::Machine;
+use crate::locality::shade::ShadeCase;
+use crate::locality::stage::{PassCounts, StageKind, Studied, cost, pair_text, total};
 use crate::progress::Stage;
 use crate::settings::parse_sides;
-use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
+use crate::techniques::interleaved_deferred::split_method::{Form, StorageKind};
 use crate::units::Extent;
 use crate::whole_file::{make_folder, read_document, write_whole};
+use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 pub const NAME: &str = "locality";
 
 /// Keys of --sweep with their values where they are not swept.
-const DEFAULTS: [(&str, &str); 7] = [
+const DEFAULTS: [(&str, &str); 15] = [
     ("split", "one-pass"),
     ("pattern", "4x4"),
     ("block", "16x16"),
@@ -35,7 +41,18 @@ const DEFAULTS: [(&str, &str); 7] = [
     ("storage", "image"),
     ("workgroup", "16x16"),
     ("size", "640x360"),
+    ("texels", "1"),
+    ("vpls", "64"),
+    ("filter", "gauss"),
+    ("kernel", "5"),
+    ("spp", "8"),
+    ("tuples", "auto"),
+    ("triangle", "8"),
+    ("blur", "0"),
 ];
+
+/// Stages where none are named.
+const STAGES: &str = "split,gather";
 
 /// Blocks where none are named.
 const BLOCKS: &[&str] = &["8", "16", "32"];
@@ -49,13 +66,30 @@ pub fn command() -> Command {
     let keys: Vec<&str> = DEFAULTS.iter().map(|(key, _)| *key).collect();
     let machines: Vec<String> = Machine::all().into_iter().map(|machine| machine.name).collect();
     Command::new(NAME)
-        .about("Lines, sectors and cache misses of splits and gathers, counted without a device on known or drawn machines")
+        .about(
+            "Lines, sectors and cache misses of splits, gathers and other stages, counted without a device on known or drawn machines",
+        )
+        .arg(
+            Arg::new("stage")
+                .long("stage")
+                .value_name("STAGE,...")
+                .value_delimiter(',')
+                .value_parser(PossibleValuesParser::new(StageKind::WORDS))
+                .default_value(STAGES)
+                .help(
+                    "Stages to count: split and gather of interleaved_deferred, its shading (shade), the discontinuities with the filter \
+                     (filter), and list insertion of deep_shading (insert)",
+                ),
+        )
         .arg(
             Arg::new("sweep")
                 .long("sweep")
                 .value_name("KEY=V,V,...")
                 .action(ArgAction::Append)
-                .help(format!("Values of one of {}, one axis of the grid; may be repeated", keys.join(", "))),
+                .help(format!(
+                    "Values of one of {}, one axis of the grid, for the stages that know it; may be repeated",
+                    keys.join(", ")
+                )),
         )
         .arg(
             Arg::new("machine")
@@ -69,7 +103,7 @@ pub fn command() -> Command {
                 .long("drawn")
                 .value_name("N")
                 .value_parser(value_parser!(u64).range(1..=100_000))
-                .conflicts_with_all(["machine", "measured"])
+                .conflicts_with_all(["machine", "measured", "stage"])
                 .help("Draw N machines instead, and say on how many of them two passes gain, at which pattern more, and which block is best"),
         )
         .arg(
@@ -98,12 +132,13 @@ pub fn command() -> Command {
 pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     progress::install(matches.get_flag("quiet"));
     let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
-    let axes = axes(&sweeps)?;
+    let stages = stages(matches);
+    let axes = axes(&sweeps, &stages)?;
     let (mut document, text) = match matches.get_one::<u64>("drawn") {
         Some(count) => {
             of_drawn(&axes, !sweeps.is_empty(), *count, *matches.get_one::<u64>("seed").expect("it has a default"))?
         }
-        None => of_known(&axes, &machines(matches)?, &measured(matches)?)?,
+        None => of_known(&stages, &axes, &machines(matches)?, &measured(matches)?)?,
     };
     document["schema"] = json!(1);
     document["command"] = json!(argv);
@@ -119,17 +154,31 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     }
 }
 
-fn axes(sweeps: &[String]) -> Result<Vec<Axis>> {
+/// Each once, in the order of a frame.
+fn stages(matches: &ArgMatches) -> Vec<StageKind> {
+    let named: Vec<&String> = matches.get_many("stage").expect("it has a default").collect();
+    StageKind::ALL.iter().copied().filter(|stage| named.iter().any(|name| *name == stage.name())).collect()
+}
+
+fn axes(sweeps: &[String], stages: &[StageKind]) -> Result<Vec<Axis>> {
     if sweeps.is_empty() {
         return Ok(AXES.iter().map(|(key, values)| Axis::new(key, values)).collect());
     }
     let axes = sweep::axes(sweeps)?;
-    let is_known = |axis: &&Axis| DEFAULTS.iter().any(|(key, _)| *key == axis.key);
+    let names = |stages: &[StageKind]| stages.iter().map(|stage| stage.name()).collect::<Vec<_>>().join(", ");
+    let know = |key: &str| -> Vec<StageKind> {
+        StageKind::ALL.iter().copied().filter(|stage| stage.keys().contains(&key)).collect()
+    };
+    let is_known = |axis: &&Axis| know(&axis.key).iter().any(|stage| stages.contains(stage));
     match axes.iter().find(|axis| !is_known(axis)) {
         Some(axis) => {
-            let keys: Vec<&str> = DEFAULTS.iter().map(|(key, _)| *key).collect();
-            Err(Error::request(format!("--sweep {}: locality knows no such key", axis.key))
-                .note(format!("there are {}", keys.join(", "))))
+            let keys = DEFAULTS.iter().map(|(key, _)| *key);
+            let keys: Vec<&str> = keys.filter(|key| know(key).iter().any(|stage| stages.contains(stage))).collect();
+            let others = know(&axis.key);
+            let elsewhere =
+                if others.is_empty() { String::new() } else { format!("; --stage {} knows it", names(&others)) };
+            Err(Error::request(format!("--sweep {}: {} knows no such key", axis.key, names(stages)))
+                .note(format!("there are {}{elsewhere}", keys.join(", "))))
         }
         None => Ok(axes),
     }
@@ -165,46 +214,98 @@ fn word<T: Choice>(key: &str, text: &str) -> Result<T> {
     T::from_word(text).ok_or_else(|| Error::request(format!("--sweep {key}={text}: there is no such {key}")))
 }
 
-/// The case of a point of the grid.
-fn case(point: &Point) -> Result<Case> {
+fn number<T: FromStr>(key: &str, text: &str, what: &str) -> Result<T> {
+    text.parse().map_err(|_| Error::request(format!("--sweep {key}={text}: it must be {what}")))
+}
+
+/// A stage at a point of the grid.
+fn study(stage: StageKind, point: &Point) -> Result<Box<dyn Studied>> {
     let text = |key: &str| {
         let own = point.iter().find(|(known, _)| known == key).map(|(_, text)| text.as_str());
         own.unwrap_or_else(|| DEFAULTS.iter().find(|(known, _)| *known == key).expect("a key of the table").1)
     };
     let side = |key: &str| pair(key, text(key));
+    let whole = |key: &str| number::<u32>(key, text(key), "a whole number");
     let [width, height] = side("size")?;
-    Case {
-        extent: Extent::new(width, height),
-        split: word("split", text("split"))?,
-        pattern: side("pattern")?,
-        block: side("block")?,
-        form: word("copy", text("copy"))?,
-        storage: word("storage", text("storage"))?,
-        workgroup: side("workgroup")?,
-    }
-    .checked()
+    let extent = Extent::new(width, height);
+    let case = || {
+        Case {
+            extent,
+            split: word("split", text("split"))?,
+            pattern: side("pattern")?,
+            block: side("block")?,
+            form: word("copy", text("copy"))?,
+            storage: word("storage", text("storage"))?,
+            workgroup: side("workgroup")?,
+        }
+        .checked()
+    };
+    Ok(match stage {
+        StageKind::Split => Box::new(SplitStage(case()?)),
+        StageKind::Gather => Box::new(GatherStage(case()?)),
+        StageKind::Shade => Box::new(
+            ShadeCase {
+                extent,
+                split: word("split", text("split"))?,
+                pattern: side("pattern")?,
+                block: side("block")?,
+                storage: word("storage", text("storage"))?,
+                workgroup: side("workgroup")?,
+                texels: whole("texels")?,
+                vpls: whole("vpls")?,
+            }
+            .checked()?,
+        ),
+        StageKind::Filter => Box::new(
+            FilterCase {
+                extent,
+                filter: word("filter", text("filter"))?,
+                taps: whole("kernel")?,
+                pattern: side("pattern")?,
+                texels: whole("texels")?,
+                workgroup: side("workgroup")?,
+            }
+            .checked()?,
+        ),
+        StageKind::Insert => {
+            let samples = whole("spp")?;
+            let tuples = if text("tuples") == "auto" { samples } else { whole("tuples")? };
+            let triangle_px = whole("triangle")?;
+            let blur_px = number("blur", text("blur"), "a number")?;
+            Box::new(InsertCase { extent, samples, tuples, triangle_px, blur_px }.checked()?)
+        }
+    })
 }
 
-/// Cases of the grid, each once: those that differ in blocks that nothing has are one.
-fn cases(axes: &[Axis]) -> Result<Vec<Case>> {
-    let mut cases: Vec<Case> = Vec::new();
-    let same = |a: &Case, b: &Case| (a.label(), a.extent, a.workgroup) == (b.label(), b.extent, b.workgroup);
+/// The stages of the grid, each once: those that differ in what they do not read are one.
+fn studies(stages: &[StageKind], axes: &[Axis]) -> Result<Vec<Box<dyn Studied>>> {
+    let mut studies: Vec<Box<dyn Studied>> = Vec::new();
+    let key = |study: &dyn Studied| (study.stage(), study.label(), study.extent(), study.workgroup());
     for point in sweep::grid(axes) {
-        let case = case(&point)?;
-        if !cases.iter().any(|known| same(known, &case)) {
-            cases.push(case);
+        for stage in stages {
+            let study = study(*stage, &point)?;
+            if !studies.iter().any(|known| key(known.as_ref()) == key(study.as_ref())) {
+                studies.push(study);
+            }
         }
     }
-    Ok(cases)
+    Ok(studies)
 }
 
-fn of_known(axes: &[Axis], machines: &[Machine], measured: &[BenchRow]) -> Result<(Value, String)> {
-    let cases = cases(axes)?;
-    let stage = Stage::counted("counting", "copies");
+fn of_known(
+    stages: &[StageKind],
+    axes: &[Axis],
+    machines: &[Machine],
+    measured: &[BenchRow],
+) -> Result<(Value, String)> {
+    let studies = studies(stages, axes)?;
+    let is_copied = stages.iter().all(|stage| matches!(stage, StageKind::Split | StageKind::Gather));
+    let what = if is_copied { "copy" } else { "stage" };
+    let stage = Stage::counted("counting", if is_copied { "copies" } else { "stages" });
     let (mut rows, mut text) = (Vec::new(), String::new());
     for (done, machine) in machines.iter().enumerate() {
         let titles = [
-            "copy",
+            what,
             "lines",
             "sectors",
             "misses of the first",
@@ -218,20 +319,18 @@ fn of_known(axes: &[Axis], machines: &[Machine], measured: &[BenchRow]) -> Resul
         if !measured.is_empty() {
             lines[0].push("measured ms".to_owned());
         }
-        for (index, case) in cases.iter().enumerate() {
+        for (index, study) in studies.iter().enumerate() {
             interrupt::check()?;
-            let found = case.counted(machine);
-            for (stage, passes) in [("split", &found.split), ("gather", &found.gather)] {
-                let counts = total(passes);
-                let ms = measured_ms(stage, case, measured);
-                lines.push(line(&format!("{stage}: {}", case.label()), case, &counts, machine));
-                if !measured.is_empty() {
-                    let text = ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.3}"));
-                    lines.last_mut().expect("it was pushed").push(text);
-                }
-                rows.push(row(stage, case, machine, passes, &counts, ms));
+            let passes = study.counted(machine);
+            let counts = total(&passes);
+            let ms = measured_ms(study.as_ref(), measured);
+            lines.push(line(study.as_ref(), &counts, machine));
+            if !measured.is_empty() {
+                let text = ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.3}"));
+                lines.last_mut().expect("it was pushed").push(text);
             }
-            stage.reach((done * cases.len() + index + 1) as u64, (machines.len() * cases.len()) as u64);
+            rows.push(row(study.as_ref(), machine, &passes, &counts, ms));
+            stage.reach((done * studies.len() + index + 1) as u64, (machines.len() * studies.len()) as u64);
         }
         let assumed = if machine.assumed.is_empty() {
             String::new()
@@ -244,13 +343,13 @@ fn of_known(axes: &[Axis], machines: &[Machine], measured: &[BenchRow]) -> Resul
     Ok((json!({ "machines": machines, "rows": rows }), text))
 }
 
-fn line(name: &str, case: &Case, counts: &Counts, machine: &Machine) -> Vec<String> {
+fn line(study: &dyn Studied, counts: &Counts, machine: &Machine) -> Vec<String> {
     let instructions = counts.instructions as f64;
     let asked = counts.asked_bytes as f64;
-    let pixels = case.extent.pixel_count() as f64;
+    let pixels = study.extent().pixel_count() as f64;
     let part = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     [
-        name.to_owned(),
+        format!("{}: {}", study.stage().name(), study.label()),
         format!("{:.2}", part(counts.lines as f64, instructions)),
         format!("{:.2}", part(counts.sectors as f64, instructions)),
         format!("{:.1} %", 100.0 * part(counts.first_misses as f64, counts.first_reads as f64)),
@@ -263,12 +362,12 @@ fn line(name: &str, case: &Case, counts: &Counts, machine: &Machine) -> Vec<Stri
     .to_vec()
 }
 
-fn row(stage: &str, case: &Case, machine: &Machine, passes: &[PassCounts], counts: &Counts, ms: Option<f64>) -> Value {
+fn row(study: &dyn Studied, machine: &Machine, passes: &[PassCounts], counts: &Counts, ms: Option<f64>) -> Value {
     json!({
-        "stage": stage,
-        "case": case.label(),
-        "size": case.extent.to_string(),
-        "workgroup": case.workgroup,
+        "stage": study.stage().name(),
+        "case": study.label(),
+        "size": study.extent().to_string(),
+        "workgroup": study.workgroup(),
         "machine": machine.name,
         "passes": passes,
         "total": counts,
@@ -277,19 +376,13 @@ fn row(stage: &str, case: &Case, machine: &Machine, passes: &[PassCounts], count
     })
 }
 
-/// The median time of the row of this stage with the settings of a case; None: there is none.
-fn measured_ms(stage: &str, case: &Case, rows: &[BenchRow]) -> Option<f64> {
-    let pair = |[x, y]: [u32; 2]| format!("{x}x{y}");
+/// The median time of the row of this stage with its settings; None: there is none.
+fn measured_ms(study: &dyn Studied, rows: &[BenchRow]) -> Option<f64> {
+    let own = [("size", study.extent().to_string()), ("workgroup", pair_text(study.workgroup()))];
+    let settings: Vec<(&str, String)> = study.settings().into_iter().chain(own).collect();
     let has = |row: &&BenchRow| {
-        let is = |key: &str, text: &str| row.settings.get(key).is_some_and(|value| value.to_string() == text);
-        row.bench == stage
-            && is("split", case.split.name())
-            && is("pattern", &pair(case.pattern))
-            && (case.split == Split::OnePass || is("block", &pair(case.block)))
-            && is("copy", case.form.name())
-            && is("size", &case.extent.to_string())
-            && is("workgroup", &pair(case.workgroup))
-            && is("storage", case.storage.name())
+        let is = |(key, text): &(&str, String)| row.settings.get(*key).is_some_and(|value| value.to_string() == *text);
+        row.bench == study.stage().name() && settings.iter().all(is)
     };
     Some(rows.iter().find(has)?.times_ms()?.median)
 }

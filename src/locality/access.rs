@@ -38,3 +38,15 @@ pub fn groups_of(kernel: &dyn Kernel) -> impl Iterator<Item = [u32; 3]> {
     let [across, down, deep] = kernel.groups();
     (0..deep).flat_map(move |z| (0..down).flat_map(move |y| (0..across).map(move |x| [x, y, z])))
 }
+
+/// Every access of a kernel, workgroup by workgroup and row by row in each.
+pub fn accesses_of(kernel: &dyn Kernel) -> Vec<Access> {
+    let [width, height] = kernel.group_size();
+    let mut all = Vec::new();
+    for group in groups_of(kernel) {
+        for local in (0..height).flat_map(|y| (0..width).map(move |x| [x, y])) {
+            kernel.accesses(group, local, &mut all);
+        }
+    }
+    all.into_iter().flatten().collect()
+}

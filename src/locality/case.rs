@@ -1,15 +1,13 @@
 //! A case: a split with its gather at one frame size, pattern and block, and what its passes come to on a machine.
 
-use super::access::Kernel;
 use super::copies::{Copy, Memory, Pass};
-use super::count::{Counts, count};
 use super::machine::Machine;
+use super::stage::{PassCounts, StageKind, Studied, check_sides, label, pair_text, rounded_block};
 use crate::error::{Error, Result};
 use crate::gpu::shader::structs::MappingParams;
 use crate::techniques::interleaved_deferred::mapping::mapping;
 use crate::techniques::interleaved_deferred::split_method::{Form, Split, StorageKind};
 use crate::units::Extent;
-use serde::Serialize;
 
 /// What is studied.
 #[derive(Clone, Debug)]
@@ -24,14 +22,6 @@ pub struct Case {
     pub workgroup: [u32; 2],
 }
 
-/// What a pass came to.
-#[derive(Clone, Debug, Serialize)]
-pub struct PassCounts {
-    pub pass: &'static str,
-    #[serde(flatten)]
-    pub counts: Counts,
-}
-
 /// What a case came to.
 pub struct Found {
     pub split: Vec<PassCounts>,
@@ -44,14 +34,7 @@ impl Case {
     /// Errors: the split is none that compute shaders copy for, or a size is 0 or too large (exit code 2).
     pub fn checked(self) -> Result<Self> {
         let Self { extent, split, pattern, block, workgroup, .. } = self;
-        let (across, down) = (extent.width, extent.height);
-        let sides = [pattern, block, workgroup].into_iter().flatten().chain([across, down]);
-        if sides.clone().any(|side| side == 0 || side > 16_384) || pattern.iter().any(|side| *side > 64) {
-            return Err(Error::request(format!(
-                "a frame of {across}x{down}, a pattern of {pattern:?}, blocks of {block:?}, workgroups of {workgroup:?}: sides are 1 \
-                 to 16384, those of a pattern up to 64"
-            )));
-        }
+        check_sides(extent, pattern, block, workgroup)?;
         if !matches!(split, Split::OnePass | Split::TwoPass | Split::Tile) {
             return Err(Error::request(format!("split={}: its addresses are not studied", split.name()))
                 .note("one-pass, two-pass and tile are"));
@@ -59,17 +42,22 @@ impl Case {
         if split == Split::Tile && self.form == Form::Push {
             return Err(Error::request("split=tile copy=push: it knows one form"));
         }
-        let has_blocks = split != Split::OnePass;
-        let rounded = [0, 1].map(|axis: usize| block[axis].next_multiple_of(pattern[axis]));
-        Ok(Self { block: if has_blocks { rounded } else { pattern }, ..self })
+        Ok(Self { block: rounded_block(split != Split::OnePass, pattern, block), ..self })
+    }
+
+    fn settings(&self) -> Vec<(&'static str, String)> {
+        let Self { split, pattern, block, form, storage, .. } = self;
+        let block = (*split != Split::OnePass).then(|| ("block", pair_text(*block)));
+        [("split", split.name().to_owned()), ("pattern", pair_text(*pattern))]
+            .into_iter()
+            .chain(block)
+            .chain([("copy", form.name().to_owned()), ("storage", storage.name().to_owned())])
+            .collect()
     }
 
     /// `split=two-pass pattern=4x4 block=16x16 copy=pull storage=image`.
     pub fn label(&self) -> String {
-        let pair = |[x, y]: [u32; 2]| format!("{x}x{y}");
-        let block = if self.split == Split::OnePass { String::new() } else { format!(" block={}", pair(self.block)) };
-        let (split, pattern) = (self.split.name(), pair(self.pattern));
-        format!("split={split} pattern={pattern}{block} copy={} storage={}", self.form.name(), self.storage.name())
+        label(&self.settings())
     }
 
     fn passes(&self) -> (&'static [Pass], &'static [Pass]) {
@@ -93,41 +81,77 @@ impl Case {
 
     /// Each pass with cold caches.
     pub fn counted(&self, machine: &Machine) -> Found {
+        let (split, gather) = self.passes();
+        Found { split: self.counted_passes(split, machine), gather: self.counted_passes(gather, machine) }
+    }
+
+    fn counted_passes(&self, passes: &[Pass], machine: &Machine) -> Vec<PassCounts> {
         let mapping = self.mapping();
         let memory = self.memory(&mapping, machine);
-        let counted = |passes: &[Pass]| {
-            let one = |pass: &Pass| {
-                let kernel = Copy {
-                    pass: *pass,
-                    form: self.form,
-                    mapping: &mapping,
-                    memory: &memory,
-                    group_size: self.workgroup,
-                };
-                PassCounts { pass: pass.name(), counts: count(&kernel as &dyn Kernel, machine) }
-            };
-            passes.iter().map(one).collect()
+        let one = |pass: &Pass| {
+            let kernel =
+                Copy { pass: *pass, form: self.form, mapping: &mapping, memory: &memory, group_size: self.workgroup };
+            PassCounts::of(pass.name(), &kernel, machine)
         };
-        let (split, gather) = self.passes();
-        Found { split: counted(split), gather: counted(gather) }
+        passes.iter().map(one).collect()
     }
 }
 
-/// All passes together.
-pub fn total(passes: &[PassCounts]) -> Counts {
-    passes.iter().fold(Counts::default(), |sum, pass| sum.plus(pass.counts))
+/// The split of a case.
+pub struct SplitStage(pub Case);
+
+/// The gather of a case.
+pub struct GatherStage(pub Case);
+
+impl Studied for SplitStage {
+    fn stage(&self) -> StageKind {
+        StageKind::Split
+    }
+
+    fn settings(&self) -> Vec<(&'static str, String)> {
+        self.0.settings()
+    }
+
+    fn extent(&self) -> Extent {
+        self.0.extent
+    }
+
+    fn workgroup(&self) -> [u32; 2] {
+        self.0.workgroup
+    }
+
+    fn counted(&self, machine: &Machine) -> Vec<PassCounts> {
+        self.0.counted_passes(self.0.passes().0, machine)
+    }
 }
 
-/// What takes the time of a copy that does nothing else, in bytes from memory: those, and what goes between the caches by how much
-/// faster it is. It explains; it does not predict.
-pub fn cost(counts: &Counts, machine: &Machine) -> f64 {
-    counts.memory_bytes() as f64 + counts.second_bytes(machine) as f64 / machine.second_speed
+impl Studied for GatherStage {
+    fn stage(&self) -> StageKind {
+        StageKind::Gather
+    }
+
+    fn settings(&self) -> Vec<(&'static str, String)> {
+        self.0.settings()
+    }
+
+    fn extent(&self) -> Extent {
+        self.0.extent
+    }
+
+    fn workgroup(&self) -> [u32; 2] {
+        self.0.workgroup
+    }
+
+    fn counted(&self, machine: &Machine) -> Vec<PassCounts> {
+        self.0.counted_passes(self.0.passes().1, machine)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::locality::access::{Access, groups_of};
+    use crate::locality::access::{Access, Kernel, accesses_of, groups_of};
+    use crate::locality::stage::total;
     use std::collections::HashMap;
 
     fn case(split: Split, form: Form, storage: StorageKind) -> Case {
@@ -137,16 +161,7 @@ mod tests {
 
     /// Every access of a pass.
     fn accesses(case: &Case, pass: Pass, mapping: &MappingParams, memory: &Memory) -> Vec<Access> {
-        let kernel = Copy { pass, form: case.form, mapping, memory, group_size: case.workgroup };
-        let mut all = Vec::new();
-        for group in groups_of(&kernel) {
-            for y in 0..case.workgroup[1] {
-                for x in 0..case.workgroup[0] {
-                    kernel.accesses(group, [x, y], &mut all);
-                }
-            }
-        }
-        all.into_iter().flatten().collect()
+        accesses_of(&Copy { pass, form: case.form, mapping, memory, group_size: case.workgroup })
     }
 
     /// Words of 8 bytes that a list of accesses reads, or writes, with how often.

@@ -1,7 +1,8 @@
 //! Drawn machines: how much two passes gain over one, at which pattern more, and which block is regretted least.
 
-use super::case::{Case, cost, total};
+use super::case::Case;
 use super::machine::Machine;
+use super::stage::{cost, total};
 use crate::error::Result;
 use crate::interrupt;
 use crate::report::spread::median;

@@ -1,5 +1,6 @@
-//! What a split and a gather of interleaved deferred shading have in memory: images in the layout of a machine, and buffers.
+//! What passes have in memory: images in the layout of a machine, and buffers, one after the other.
 
+use super::access::Access;
 use super::layout::Layout;
 use crate::gpu::shader::structs::MappingParams;
 use crate::techniques::interleaved_deferred::split_method::StorageKind;
@@ -11,24 +12,53 @@ pub const TEXEL_BYTES: u32 = 8;
 /// Resources begin at multiples of this: far enough that none shares a line with another.
 const ALIGNMENT: u64 = 1 << 16;
 
-/// An image, or a buffer of texels in some order.
+/// An image, or a buffer of entries.
 #[derive(Clone, Copy, Debug)]
 pub struct Resource {
     base: u64,
+    /// All of it, with the padding of an image's layout.
+    bytes: u64,
+    /// A texel, or an entry.
+    entry_bytes: u32,
     layout: Layout,
-    /// The extent of an image; a buffer has none.
+    /// Of a layer of an image; a buffer has none.
     extent: Extent,
 }
 
 impl Resource {
     /// Address of a texel of an image.
     pub fn texel(&self, at: [u32; 2]) -> u64 {
-        self.base + self.layout.index(self.extent, at) * u64::from(TEXEL_BYTES)
+        self.entry(self.layout.index(self.extent, at))
     }
 
-    /// Address of a texel of a buffer.
+    /// Address of a texel of a layer.
+    pub fn layer_texel(&self, [x, y, layer]: [u32; 3]) -> u64 {
+        self.entry(u64::from(layer) * self.layout.texel_count(self.extent) + self.layout.index(self.extent, [x, y]))
+    }
+
+    /// Address of an entry of a buffer.
     pub fn entry(&self, index: u64) -> u64 {
-        self.base + index * u64::from(TEXEL_BYTES)
+        self.base + index * u64::from(self.entry_bytes)
+    }
+
+    /// Reads an entry, or a texel, at its address.
+    pub fn read(&self, address: u64) -> Access {
+        Access::read(address, self.entry_bytes)
+    }
+
+    /// Writes an entry, or a texel, at its address.
+    pub fn write(&self, address: u64) -> Access {
+        Access::write(address, self.entry_bytes)
+    }
+
+    /// Bytes that are asked for of it, to read and to write.
+    pub fn asked_bytes(&self, accesses: &[Access]) -> [u64; 2] {
+        let own = self.base..self.base + self.bytes;
+        let mut asked = [0; 2];
+        for access in accesses.iter().filter(|access| own.contains(&access.address)) {
+            asked[usize::from(access.is_write)] += u64::from(access.bytes);
+        }
+        asked
     }
 }
 
@@ -39,20 +69,31 @@ pub struct Space {
 }
 
 impl Space {
+    /// An image of `TEXEL_BYTES` a texel.
     pub fn image(&mut self, layout: Layout, extent: Extent) -> Resource {
-        let base = self.take(layout.texel_count(extent));
-        Resource { base, layout, extent }
+        self.layers(layout, extent, 1)
     }
 
+    /// An image of `TEXEL_BYTES` a texel with layers, which lie one after the other.
+    pub fn layers(&mut self, layout: Layout, extent: Extent, count: u32) -> Resource {
+        let resource = self.take(u64::from(count) * layout.texel_count(extent), TEXEL_BYTES);
+        Resource { layout, extent, ..resource }
+    }
+
+    /// A buffer of `TEXEL_BYTES` a texel.
     pub fn buffer(&mut self, texels: u64) -> Resource {
-        let base = self.take(texels);
-        Resource { base, layout: Layout::Linear, extent: Extent::new(0, 0) }
+        self.take(texels, TEXEL_BYTES)
     }
 
-    fn take(&mut self, texels: u64) -> u64 {
-        let base = self.end;
-        self.end = (base + texels * u64::from(TEXEL_BYTES)).next_multiple_of(ALIGNMENT);
-        base
+    /// A buffer of entries of another size.
+    pub fn entries(&mut self, count: u64, entry_bytes: usize) -> Resource {
+        self.take(count, entry_bytes as u32)
+    }
+
+    fn take(&mut self, count: u64, entry_bytes: u32) -> Resource {
+        let (base, bytes) = (self.end, count * u64::from(entry_bytes));
+        self.end = (base + bytes).next_multiple_of(ALIGNMENT);
+        Resource { base, bytes, entry_bytes, layout: Layout::Linear, extent: Extent::new(0, 0) }
     }
 }
 

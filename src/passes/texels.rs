@@ -26,7 +26,7 @@ const SOFTWARE_TEXELS: u32 = 16;
 const GPU_TEXELS: u32 = 1;
 
 /// Texels that a thread filters or compares at most: with 16, a filter of 5 taps is slower again (16.1 ms, with 8 10.6).
-const FILTER_TEXELS: u32 = 8;
+pub const FILTER_TEXELS: u32 = 8;
 /// Pixels of a column that a thread shades with punctual lights at most: those of a tile. 188 lights, kaos, 1024x768, with
 /// tiled culling: 718 ms with 1, 320 with 4, 254 with 8, 222 with 16.
 const COLUMN_TEXELS: u32 = 16;

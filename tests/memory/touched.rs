@@ -1,41 +1,14 @@
 //! Bytes that frames touch, as their shaders count them, against what must be touched.
 
-use crate::support::benched::read;
 use crate::support::program::Program;
 use crate::support::skip;
+use crate::support::touched::{bytes, ends, list, rendered, row};
 use serde_json::Value;
 use std::path::Path;
 
 /// Pixels of the pictures.
 const PIXELS: u64 = 64 * 48;
 const SIZE: [&str; 2] = ["--size", "64x48"];
-
-/// Report of a render.
-fn rendered(program: &Program, arguments: &[&str]) -> Value {
-    let files = ["-o", "picture.png", "--report", "report.json", "--quiet"];
-    program.run(&[&["render"], arguments, &files].concat()).fine();
-    serde_json::from_str(&read(program, "report.json")).unwrap()
-}
-
-fn list(value: &Value) -> &[Value] {
-    value.as_array().unwrap_or_else(|| panic!("no list: {value}"))
-}
-
-fn ends<'a>(rows: &'a [Value], key: &str, end: &str) -> &'a Value {
-    let found = rows.iter().find(|row| row[key].as_str().unwrap().ends_with(end));
-    found.unwrap_or_else(|| panic!("no {end} in {rows:#?}"))
-}
-
-/// A pass's row of a resource, both named by the ends of their names.
-fn row<'a>(report: &'a Value, pass: &str, resource: &str) -> &'a Value {
-    let pass = ends(list(&report["memory"]["touched"]["passes"]), "pass", pass);
-    ends(list(&pass["resources"]), "resource", resource)
-}
-
-/// Bytes that are read, written, asked for by reads, and by writes.
-fn bytes(row: &Value) -> [u64; 4] {
-    ["read_bytes", "written_bytes", "asked_read_bytes", "asked_written_bytes"].map(|key| row[key].as_u64().unwrap())
-}
 
 #[test]
 fn a_pass_over_all_pixels_touches_each_once() {

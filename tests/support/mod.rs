@@ -14,6 +14,7 @@ pub mod program;
 pub mod seen;
 pub mod shading_space;
 pub mod square;
+pub mod touched;
 pub mod watched;
 
 use quincunx::caps::{Caps, known};

@@ -34,7 +34,7 @@ pub fn plan(plan: &mut Plan, technique: &str, label: &str, texel_count: u64, pos
 
 /// Columns that a thread flags at most: 1024x768 take 7.9 ms with 1, 6.5 with 2, 6.3 with 4, 9.7 with 8 (rows of 8;
 /// lavapipe 22.3.6).
-const MOST_COLUMNS: u32 = 2;
+pub const MOST_COLUMNS: u32 = 2;
 
 pub struct Discontinuity {
     label: String,

@@ -91,7 +91,7 @@ mod primitives;
 mod ranges;
 mod reconstruct;
 mod resolve;
-mod resources;
+pub(crate) mod resources;
 mod rivals;
 mod sample_colors;
 mod sample_count;
@@ -104,7 +104,7 @@ mod space;
 mod stages;
 mod stereo;
 mod touched;
-mod tuples;
+pub(crate) mod tuples;
 mod visibility;
 
 use super::bench_stage::BenchStage;

@@ -118,9 +118,6 @@ pub const PATTERNS: &[NamedPattern] = &[
     },
 ];
 
-/// Workgroups that a list of texels is worth at least, where it has so many: the last one's threads may stand behind its end.
-const LEAST_WORKGROUPS: u64 = 4;
-
 /// Subsets that eight bits of stencil can distinguish.
 const STENCIL_SUBSETS: u32 = 256;
 
@@ -346,9 +343,7 @@ impl Choices {
         let joined = self.joined_count().div_ceil(self.direct_subset_count());
         let load = self.shading.direct.load(joined as usize);
         let lanes = u64::from(self.shading.lane_count());
-        let room = self.mapping.sub_texel_count() / (lanes * LEAST_WORKGROUPS);
-        let room = room.checked_ilog2().map_or(1, |power| 1 << power);
-        self.shading.texels.of_list(load).min(room)
+        self.shading.texels.of_list(load).min(self.mapping.most_list_texels(lanes))
     }
 
     /// The most virtual lights that a pixel has.

@@ -5,6 +5,9 @@ use crate::gpu::shader::structs::MappingParams;
 use crate::sampling::pattern::grid;
 use crate::units::Extent;
 
+/// Workgroups that a list of texels is worth at least, where it has so many: the last one's threads may stand behind its end.
+const LEAST_WORKGROUPS: u64 = 4;
+
 /// The mapping of one frame, pattern and block.
 ///
 /// Sub-buffers are padded to one size: to whole sub-blocks, and so many that their width is even and a thread can carry
@@ -37,6 +40,12 @@ impl MappingParams {
     /// Texels of one sub-buffer with its padding.
     pub fn sub_texel_count(&self) -> u64 {
         u64::from(self.sub_width_px) * u64::from(self.sub_height_px)
+    }
+
+    /// Texels of a sub-buffer that a thread shades at most, of workgroups of `lanes`.
+    pub fn most_list_texels(&self, lanes: u64) -> u32 {
+        let room = self.sub_texel_count() / (lanes * LEAST_WORKGROUPS);
+        room.checked_ilog2().map_or(1, |power| 1 << power)
     }
 
     /// Texels of all sub-buffers, and of the block layout.

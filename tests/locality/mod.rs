@@ -1,5 +1,7 @@
 //! Locality: the address streams move real buffers as the shaders do, and `bench locality` counts and says.
 
+mod touched;
+
 use crate::support::program::Program;
 use crate::support::watched::Watched;
 use crate::techniques::interleaved_deferred::split::back_in_frame_order;
@@ -172,6 +174,46 @@ fn copies_are_counted_on_every_machine_beside_what_was_measured() {
 }
 
 #[test]
+fn other_stages_are_counted_each_once_for_what_they_read() {
+    let program = Program::new();
+    let measured = "bench shade cornell --size 64x48 --workgroup 16x16 --split remap --pattern 2x2 --texels 1 --repeat 1 -o rows --quiet";
+    let measured = [&measured.split(' ').collect::<Vec<_>>()[..], &["--sweep", "vpls=16,64"]].concat();
+    program.run(&measured).fine();
+    let axes = [
+        "--stage",
+        "insert,filter,shade",
+        "--machine",
+        "volta-v100",
+        "--sweep",
+        "size=64x48",
+        "--sweep",
+        "pattern=2x2,4x4",
+        "--sweep",
+        "split=remap,branch,none",
+        "--sweep",
+        "vpls=16,64",
+    ];
+    let found = counted(&program, &[&axes[..], &["--measured", "rows", "-o", "out"]].concat());
+    let rows = found["rows"].as_array().unwrap();
+    let of = |stage: &str| rows.iter().filter(|row| row["stage"] == stage).collect::<Vec<_>>();
+    // Without a split the pattern says nothing; the Gaussian and the lists know none of these keys.
+    assert_eq!([of("shade").len(), of("filter").len(), of("insert").len(), rows.len()], [2 * 5, 1, 1, 12]);
+    assert_eq!(rows[0]["case"], "split=remap pattern=2x2 texels=1 vpls=16");
+    assert_eq!(rows[1]["case"], "filter=gauss kernel=5 texels=1");
+    assert_eq!(rows[2]["case"], "spp=8 tuples=8 triangle=8 blur=0");
+    assert_eq!(rows.iter().filter(|row| !row["measured_ms"].is_null()).count(), 2, "{rows:#?}");
+    // Lights of a subset are read by each of its pixels: 48 bytes of a fourth of them.
+    let asked = |row: &Value| row["total"]["asked_bytes"].as_u64().unwrap();
+    let lights = |case: &str| asked(rows.iter().find(|row| row["case"] == case).unwrap());
+    let [few, many] = [16, 64].map(|vpls| lights(&format!("split=branch pattern=2x2 texels=1 vpls={vpls}")));
+    assert_eq!(many - few, 64 * 48 * (16 - 4) * 48);
+    let passes = of("filter")[0]["passes"].as_array().unwrap().iter().map(|pass| pass["pass"].as_str().unwrap());
+    assert_eq!(passes.collect::<Vec<_>>(), ["discontinuity", "filter.rows", "filter.columns"]);
+    let text = std::fs::read_to_string(program.path("out/locality.txt")).unwrap();
+    assert!(text.contains("insert: spp=8 tuples=8 triangle=8 blur=0"), "{text}");
+}
+
+#[test]
 fn drawn_machines_say_where_two_passes_gain() {
     let program = Program::new();
     let small = ["--drawn", "30", "--sweep", "size=64x32", "--sweep", "block=8,16"];
@@ -204,6 +246,14 @@ fn what_cannot_be_counted_is_refused() {
         (&["--drawn", "5", "--sweep", "copy=pull,push"], &["--drawn with --sweep copy="]),
         (&["--drawn", "5", "--sweep", "pattern=8x8"], &["--drawn with --sweep pattern=", "2x2 and at 4x4"]),
         (&["--seed", "2"], &["--drawn"]),
+        (&["--stage", "composite"], &["composite", "insert"]),
+        (&["--stage", "split", "--drawn", "5"], &["--stage", "--drawn"]),
+        (&["--sweep", "vpls=64"], &["--sweep vpls: split, gather", "--stage shade knows it"]),
+        (&["--stage", "shade", "--sweep", "split=stencil"], &["split=stencil", "remap, one-pass"]),
+        (&["--stage", "shade", "--sweep", "vpls=few"], &["--sweep vpls=few", "a whole number"]),
+        (&["--stage", "filter", "--sweep", "filter=none"], &["--sweep filter=none", "no such filter"]),
+        (&["--stage", "insert", "--sweep", "blur=99"], &["blur=99", "0 to 64 px"]),
+        (&["--stage", "insert", "--sweep", "tuples=12"], &["spp=8 tuples=12"]),
     ] {
         let ran = program.run(&[&["bench", "locality"][..], more].concat());
         assert_eq!(ran.code, 2, "{more:?}: {}", ran.err);
