@@ -117,18 +117,19 @@ fn what_a_pass_reckons_knows_the_lights() {
     let program = Program::new();
     for (split, subsets) in [("none", 1), ("branch", 4), ("remap", 4), ("one-pass", 4), ("two-pass", 4)] {
         let own = [&["--split", split][..], if subsets == 1 { &[] } else { &["--pattern", "2x2"] }].concat();
-        let shade = |vpls: &str, more: &[&str]| {
-            let settings = [&["cornell", "--vpls", vpls], &SIZE[..], &own, more].concat();
-            let report = rendered(&program, &settings);
+        let report = |vpls: &str, more: &[&str]| {
+            rendered(&program, &[&["cornell", "--vpls", vpls], &SIZE[..], &own, more].concat())
+        };
+        let shade = |report: &Value| {
             let pass = ends(list(&report["passes"]), "name", "shade");
             ["bytes_read", "invocations"].map(|key| pass[key].as_u64().unwrap())
         };
-        let [few, many] = ["16", "64"].map(|vpls| shade(vpls, &[]));
+        let [few, many] = ["16", "64"].map(|vpls| shade(&report(vpls, &[])));
         assert_eq!(few[1], many[1], "{split}");
         assert_eq!(many[0] - few[0], many[1] * (64 - 16) * 48 / subsets, "{split}");
-        let counted = shade("64", &["--touched", "page"]);
-        let report: Value = serde_json::from_str(&read(&program, "report.json")).unwrap();
-        let [.., asked, _] = bytes(row(&report, "shade", "vpls"));
+        let touched = report("64", &["--touched", "page"]);
+        let counted = shade(&touched);
+        let [.., asked, _] = bytes(row(&touched, "shade", "vpls"));
         let reckoned = many[1] * 64 * 48 / subsets;
         assert!(asked <= reckoned && asked > reckoned / 2, "{split}: {asked} {reckoned}");
         assert!(counted[1] >= many[1] && counted[1] < 2 * many[1], "{split}: whole workgroups: {counted:?} {many:?}");
