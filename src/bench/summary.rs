@@ -14,6 +14,7 @@ use super::table::{MARK, Table};
 use super::what::What;
 use crate::caps::Identity;
 use crate::error::Result;
+use crate::report::command_line::command_line;
 use crate::techniques;
 use crate::techniques::bench_stage::flags;
 use crate::whole_file::write_whole;
@@ -87,7 +88,7 @@ impl Summary {
     pub fn markdown(&self) -> String {
         let title = self.title();
         let table = Table::new(self.what, &self.rows).markdown();
-        let mut text = format!("# {title}\n\n{}\n\n    {}\n\n{table}", self.legend(), self.command.join(" "));
+        let mut text = format!("# {title}\n\n{}\n\n    {}\n\n{table}", self.legend(), command_line(&self.command));
         let notes = self.notes();
         if !notes.is_empty() {
             text.push('\n');

@@ -20,6 +20,7 @@ use crate::bench::sweep;
 use crate::bench::what::What;
 use crate::error::{Error, ErrorKind, Result};
 use crate::progress::{Pace, Stage, say};
+use crate::report::command_line::command_line;
 use crate::techniques::bench_stage::BenchStage;
 use crate::techniques::{self, Technique, settings_of};
 use clap::error::{ContextKind, ContextValue};
@@ -208,7 +209,7 @@ fn run_file(matches: &ArgMatches) -> Result<()> {
     let mut gates = Ok(());
     for words in bench_file::commands(matches)? {
         let argv: Vec<String> = std::iter::once("quincunx".to_owned()).chain(words.iter().cloned()).collect();
-        say(argv.join(" "));
+        say(command_line(&argv));
         let parsed = command(&TechniqueSelection::All).try_get_matches_from(&words);
         let parsed = parsed.map_err(|error| {
             // What clap says of usage is of a command that nobody typed.

@@ -8,6 +8,7 @@ use super::request::Request;
 use super::{close_up, step_run, text};
 use crate::error::{Error, Result};
 use crate::progress::say;
+use crate::report::command_line::command_line;
 use crate::whole_file::write_whole;
 use std::io::Write;
 
@@ -41,7 +42,7 @@ pub fn reproduce(paper: &Paper, item: &Item, request: &Request) -> Result<Outcom
         .map_err(|error| Error::request(format!("-o {}: {error}", request.folder.display())))?;
     let mut found = Found::default();
     for (index, step) in recipe.steps.iter().enumerate() {
-        let command = step.command(request).join(" ");
+        let command = command_line(&step.command(request));
         say(format!("{name}, step {} of {}: quincunx {command}", index + 1, recipe.steps.len()));
         let (left, written) = step_run::run(step, request, COMMIT)?;
         found.latest = found.latest.max(written);

@@ -2,6 +2,7 @@
 
 use super::columns::{columns, missing};
 use super::outcome::{Outcome, TableOutcome};
+use crate::report::command_line::command_line;
 use std::fmt::Write;
 
 /// All of it.
@@ -28,7 +29,7 @@ pub fn text(outcome: &Outcome) -> String {
         line("\nBy\n".to_owned());
     }
     for step in &outcome.steps {
-        line(format!("    quincunx {}", step.command.join(" ")));
+        line(format!("    quincunx {}", command_line(&step.command)));
     }
     for step in &outcome.steps {
         if let Some(failed) = &step.failed {

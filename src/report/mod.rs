@@ -1,5 +1,6 @@
 //! What a command leaves behind: numbers, tables.
 
+pub mod command_line;
 pub mod errors;
 pub mod memory;
 pub mod notes;

@@ -11,6 +11,7 @@ use crate::bench::table::{self, Table};
 use crate::error::{Error, Result};
 use crate::metrics::gate::Gate;
 use crate::preset;
+use crate::report::command_line::command_line;
 use crate::settings::written::{SettingValue, WrittenSettings};
 use crate::techniques::Technique;
 use indexmap::IndexMap;
@@ -247,7 +248,7 @@ impl Tuned {
         let row = self.row();
         let mut tuned: IndexMap<String, toml::Value> = IndexMap::new();
         let mut say = |key: &str, value: toml::Value| tuned.insert(key.to_owned(), value);
-        say("command", self.command.join(" ").into());
+        say("command", command_line(&self.command).into());
         say("scene", row.scene.name.clone().into());
         say("device", row.device.as_ref().map(|device| device.name.clone()).unwrap_or_default().into());
         say("commit", row.commit.clone().into());

@@ -2,6 +2,7 @@
 
 use crate::support::benched::{bench, lines, read};
 use crate::support::program::Program;
+use quincunx::report::command_line::command_line;
 use serde_json::Value;
 
 const FILE: &str = r#"
@@ -46,7 +47,7 @@ fn a_file_says_what_flags_say() {
         assert!(point["ratio"]["mean"].as_f64().unwrap() > 0.0 && point["baseline"] == "split=none vpls=16");
         // The command of a scene is one that a user can type, and comes to the same rows.
         let command: Vec<String> = serde_json::from_value(summary["command"].clone()).unwrap();
-        assert!(ran.err.contains(&command[1..].join(" ")), "{}", ran.err);
+        assert!(ran.err.contains(&command_line(&command)), "{}", ran.err);
         let words: Vec<&str> = command[1..].iter().map(String::as_str).chain(["--resume", "--quiet"]).collect();
         assert_eq!(program.run(&words).fine().out, "", "nothing is missing");
         said.extend(rows);

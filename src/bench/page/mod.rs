@@ -11,6 +11,7 @@ use super::table;
 use crate::error::Result;
 use crate::metrics::Metrics;
 use crate::page::{self, pictures};
+use crate::report::command_line::command_line;
 use maud::{Markup, html};
 use std::path::{Path, PathBuf};
 
@@ -45,7 +46,7 @@ pub fn text(shown: &Shown<'_>) -> Result<String> {
     let pictures = pictures(shown)?;
     let body = html! {
         p.note { (shown.legend) ". Made by " code { "quincunx bench" } "." }
-        pre { (shown.command.join(" ")) }
+        pre { (command_line(shown.command)) }
         @for measure in ["flip", "rmse"] { @if let Some(plot) = scatter::plot(measure, shown.rows) { (plot) } }
         @for map in heat::maps(shown.axes, shown.rows) { (map) }
         (pictures)

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::page::{self, pictures};
 use crate::papers::columns::{columns, missing};
 use crate::papers::outcome::{Outcome, TableOutcome};
+use crate::report::command_line::command_line;
 use maud::{Markup, html};
 use std::path::Path;
 
@@ -44,7 +45,7 @@ pub fn markup(outcome: &Outcome, folder: &Path) -> Result<Markup> {
             @if !outcome.steps.is_empty() {
                 details {
                     summary { (outcome.steps.len()) " commands" }
-                    @for step in &outcome.steps { pre { "quincunx " (step.command.join(" ")) } }
+                    @for step in &outcome.steps { pre { "quincunx " (command_line(&step.command)) } }
                 }
             }
         }
