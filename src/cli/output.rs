@@ -16,12 +16,12 @@ pub fn quiet_flag() -> Arg {
 
 /// `--repeat N`, of verbs that measure in rounds; `help`: what a round is.
 pub fn repeat_flag(help: &'static str) -> Arg {
-    Arg::new("repeat")
-        .long("repeat")
-        .value_name("N")
-        .value_parser(value_parser!(u32).range(1..=10_000))
-        .default_value("5")
-        .help(help)
+    bare_repeat_flag(help).default_value("5")
+}
+
+/// The same without a default.
+pub fn bare_repeat_flag(help: &'static str) -> Arg {
+    Arg::new("repeat").long("repeat").value_name("N").value_parser(value_parser!(u32).range(1..=10_000)).help(help)
 }
 
 /// `-o DIR`.

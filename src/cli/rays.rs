@@ -3,7 +3,7 @@
 use super::{job_args, progress};
 use crate::bench::rays::{self, Request, Variant, report};
 use crate::bench::sweep::{self, Point};
-use crate::cli::output::{print, print_text, quiet_flag};
+use crate::cli::output::{print, print_text, quiet_flag, repeat_flag};
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::fail_on_validation;
@@ -31,7 +31,7 @@ pub fn command() -> Command {
                 .help("A built-in scene or a .gltf or .glb file"),
         )
         .arg(number("rays", "262144", 1 << 24).help("Number of rays in a set"))
-        .arg(number("repeat", "5", 10_000).help("Number of rounds, each of which measures every walk once"))
+        .arg(repeat_flag("Number of rounds, each of which measures every walk once"))
         .arg(number("seed", "1", u64::from(u32::MAX)).help("Seed of the rays and of a built-in scene"))
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("Device, by a part of its name or its index in `quincunx devices`"))
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
@@ -82,7 +82,7 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let request = Request {
         ray_count: number("rays") as u32,
         seed: number("seed"),
-        repeat: number("repeat") as usize,
+        repeat: *matches.get_one::<u32>("repeat").expect("it has a default") as usize,
         variants: variants(matches)?,
     };
     progress::install(matches.get_flag("quiet"));

@@ -2,7 +2,7 @@
 
 use super::job_args::{Row, flag, rows};
 use super::listed::TechniqueSelection;
-use super::output::{folder_flag, print, print_text, quiet_flag};
+use super::output::{bare_repeat_flag, folder_flag, print, print_text, quiet_flag};
 use super::progress;
 use crate::error::{Error, Result};
 use crate::papers::item::{Item, Paper};
@@ -44,13 +44,7 @@ pub fn command() -> Command {
                 .help("Scene in place of the item's own, a built-in one or a file; may be repeated, for a result each"),
         )
         .arg(flag_of("quick", "A quarter of the pictures' sides, and few rounds: to see that all runs, and its shape"))
-        .arg(
-            Arg::new("repeat")
-                .long("repeat")
-                .value_name("N")
-                .value_parser(value_parser!(u32).range(1..=10_000))
-                .help("Rounds of measurements, in place of the item's own; intervals need three"),
-        )
+        .arg(bare_repeat_flag("Rounds of measurements, in place of the item's own; intervals need three"))
         .arg(folder_flag("Folder for results").default_value("out"))
         .arg(
             Arg::new("frames")

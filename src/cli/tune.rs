@@ -55,12 +55,9 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 .help("Values of one setting to choose from; may be repeated; default: those of the technique, which `tune` says"),
         )
         .arg(
-            Arg::new("repeat")
-                .long("repeat")
-                .value_name("N")
+            output::bare_repeat_flag("Rounds of the last measurement: of the fastest, and of what differs from it in one setting")
                 .value_parser(value_parser!(u32).range(LEAST_PAIRS as i64..=1000))
-                .default_value("10")
-                .help("Rounds of the last measurement: of the fastest, and of what differs from it in one setting"),
+                .default_value("10"),
         )
         .arg(output::folder_flag("Folder to write preset.toml, tune.json and tune.txt to, and the last measurement as `bench` does, with pictures"))
         .arg(
