@@ -281,6 +281,10 @@ impl<'a> Sweep<'a> {
         }
         Ok(group)
     }
+            // In groups of one no row waits for another: its ratio is to itself, and it stands in every group after this.
+            if self.most == 1 {
+                return Ok(group);
+            }
 
     fn measure_group(&mut self, group: &Group) -> Result<()> {
         let pictures = group.pictures()?;

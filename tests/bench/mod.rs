@@ -4,6 +4,8 @@ mod allocate;
 mod device;
 mod file;
 mod frames;
+#[cfg(target_os = "linux")]
+mod killed;
 mod page;
 mod rates;
 mod rays;
