@@ -18,8 +18,10 @@ const FAIR_TEXELS: &str = "1";
 pub struct Candidate {
     /// The technique of the point; its settings are those of the request, where it reads them.
     pub job: Job,
-    /// Its name in tables, and for `--baseline`.
+    /// What it sets, in words: in tables where it has no name, and for `--baseline`.
     pub label: String,
+    /// As `NamedPoint` has it.
+    pub name: Option<String>,
     /// Texts of what was asked for: settings of the request that are not at their defaults, and the point's own.
     pub asked: BTreeMap<String, String>,
     /// Texts of every setting, those of the point as they were asked for.
@@ -71,7 +73,12 @@ impl Candidate {
             }
             _ => Ok(timed(job.technique, &without_unread(job.technique, &values))),
         });
-        Self { job, label: label(point), asked, settings, unread, unread_axes, values }
+        Self { job, label: label(point), name: None, asked, settings, unread, unread_axes, values }
+    }
+
+    /// The same, called `name`.
+    pub fn named(self, name: Option<String>) -> Self {
+        Self { name, ..self }
     }
 
     /// Why nothing reads `key`; None where something does, or where the settings cannot be.

@@ -13,11 +13,12 @@ pub const NAME: &str = "rows.csv";
 /// A column: its title, and what it says of a row; empty where that is nothing.
 type Column = (&'static str, fn(&BenchRow) -> Option<String>);
 
-const BEFORE: [Column; 4] = [
+const BEFORE: [Column; 5] = [
     ("bench", |row| Some(row.bench.clone())),
     ("scene", |row| Some(row.scene.name.clone())),
     ("technique", |row| Some(row.technique.clone())),
     ("variant", |row| Some(row.variant.clone())),
+    ("name", |row| row.name.clone()),
 ];
 
 /// Behind these come the `NUMBERS` of a row.

@@ -75,8 +75,8 @@ impl Condition {
             .iter()
             .filter(|(_, found)| self.holds(found))
             .map(|(row, Number { value, interval })| match interval {
-                Some([low, high]) => format!("{} {value:.4} ({low:.4} to {high:.4})", row.variant),
-                None => format!("{} {value}", row.variant),
+                Some([low, high]) => format!("{} {value:.4} ({low:.4} to {high:.4})", row.title()),
+                None => format!("{} {value}", row.title()),
             })
             .collect();
         match held.len() {

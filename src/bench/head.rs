@@ -59,6 +59,7 @@ impl Head<'_> {
             schema: SCHEMA,
             bench: what.name().to_owned(),
             variant: candidate.label.clone(),
+            name: candidate.name.clone(),
             device: Some(session.gpu.caps.identity.clone()),
             commit: env!("QUINCUNX_COMMIT").to_owned(),
             scene: SceneName { name: session.scene.name.clone(), hash: session.scene.hash.clone() },

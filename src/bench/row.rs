@@ -30,6 +30,9 @@ pub struct BenchRow {
     pub bench: String,
     /// What the row sets, in words.
     pub variant: String,
+    /// What its point beside the grid was called; None where it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     pub device: Option<Identity>,
     /// Commit of the program.
     pub commit: String,
@@ -237,7 +240,7 @@ impl Beside {
 }
 
 impl BenchRow {
-    /// What says that two rows are of the same measurement.
+    /// What says that two rows are of the same measurement. A name does not: what is called otherwise is not measured again.
     pub fn key(&self) -> String {
         json!([
             self.bench,
@@ -255,6 +258,11 @@ impl BenchRow {
             self.asked(),
         ])
         .to_string()
+    }
+
+    /// What tables call it: its name, or what it sets.
+    pub fn title(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.variant)
     }
 
     /// Settings as they were typed: what a row's are by name. Rows of earlier versions have these as their settings.

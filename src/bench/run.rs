@@ -11,7 +11,7 @@ use super::rounds::Length;
 use super::row::BenchRow;
 use super::rows_file::RowsFile;
 use super::shard::Shard;
-use super::sweep::{self, Axis, Part, Point};
+use super::sweep::{self, Axis, NamedPoint, Part};
 use super::variant::Variant;
 use super::what::What;
 use crate::error::{Error, ErrorKind, Result};
@@ -36,11 +36,11 @@ pub struct Request<'a> {
     pub job: &'a Job,
     pub what: What,
     pub axes: &'a [Axis],
-    /// `KEY=VALUE KEY=VALUE`, a point of the grid, or one for each point of the axes that it leaves out; None: the first that is
-    /// possible.
+    /// `KEY=VALUE KEY=VALUE`, a point of the grid, or one for each point of the axes that it leaves out; or a point's name. None:
+    /// the first that is possible.
     pub baseline: Option<&'a str>,
     /// Rows beside the grid.
-    pub points: &'a [Point],
+    pub points: &'a [NamedPoint],
     /// Rounds, at least one.
     pub repeat: usize,
     /// As `rounds::Length` has it.
@@ -112,8 +112,10 @@ pub fn run(request: &Request<'_>, file: Option<&mut RowsFile>, observer: &mut dy
     };
     let session = job.open_session(&DeviceRequest { robust: false, ..job.device_request() }, scene)?;
     let sequence = request.frames.map(|frames| Sequence::new(job, frames, &session.gpu)).transpose()?.map(Rc::new);
-    let candidates: Vec<Candidate> =
-        grid.iter().map(|point| Candidate::new(job, axes, point, request.is_fair, &hash)).collect();
+    let candidate = |NamedPoint { name, point }: &NamedPoint| {
+        Candidate::new(job, axes, point, request.is_fair, &hash).named(name.clone())
+    };
+    let candidates: Vec<Candidate> = grid.iter().map(candidate).collect();
     require_readers(job, axes, &candidates)?;
     if let Some(asked) = &job.reference {
         request.frames.map_or(Ok(()), |_| ReferenceRequest::check_sequence(asked))?;
@@ -211,7 +213,11 @@ impl<'a> Sweep<'a> {
         let (repeat, frames) = (request.repeat, request.frames.cloned());
         let until_interval = request.until_interval;
         let head = Head { measurement, repeat, until_interval, baseline: candidates[baseline].label.clone(), frames };
-        let kept = |candidate: &Candidate| file.as_ref()?.kept(&head.row(candidate)).cloned();
+        // A row that was there has the name that this run gives it.
+        let kept = |candidate: &Candidate| {
+            let row = file.as_ref()?.kept(&head.row(candidate))?.clone();
+            Some(BenchRow { name: candidate.name.clone(), ..row })
+        };
         let is_own = |index: &usize| request.shard.is_none_or(|shard| shard.has(&head.row(&candidates[*index])));
         let points: Vec<usize> = points.iter().copied().filter(is_own).collect();
         points.iter().for_each(|index| found.rows[*index] = kept(&candidates[*index]));
@@ -275,16 +281,16 @@ impl<'a> Sweep<'a> {
             let values = self.candidates[self.baseline].values.clone()?;
             let measurement = self.head.measurement.of(&self.candidates[self.baseline]);
             group.add_baseline(&measurement, self.baseline, &self.baseline_variant, &values);
+            // In groups of one no row waits for another: its ratio is to itself, and it stands in every group after this.
+            if self.most == 1 {
+                return Ok(group);
+            }
         }
         for (index, error) in group.fill(&self.head.measurement, self.candidates, waiting)? {
             self.skip(index, &error)?;
         }
         Ok(group)
     }
-            // In groups of one no row waits for another: its ratio is to itself, and it stands in every group after this.
-            if self.most == 1 {
-                return Ok(group);
-            }
 
     fn measure_group(&mut self, group: &Group) -> Result<()> {
         let pictures = group.pictures()?;

@@ -86,7 +86,7 @@ impl Summary {
     }
 
     pub fn markdown(&self) -> String {
-        let title = self.title();
+        let title = self.heading();
         let table = Table::new(self.what, &self.rows).markdown();
         let mut text = format!("# {title}\n\n{}\n\n    {}\n\n{table}", self.legend(), command_line(&self.command));
         let notes = self.notes();
@@ -100,7 +100,7 @@ impl Summary {
         text
     }
 
-    fn title(&self) -> String {
+    fn heading(&self) -> String {
         format!("bench {}: {}", self.what.name(), self.place())
     }
 
@@ -109,7 +109,7 @@ impl Summary {
     /// Errors: a picture cannot be read (exit code 2).
     fn page(&self, folder: &Path) -> Result<String> {
         page::text(&Shown {
-            title: &self.title(),
+            title: &self.heading(),
             legend: &self.legend(),
             notes: &self.notes(),
             command: &self.command,
@@ -147,7 +147,8 @@ impl Summary {
 
     fn legend(&self) -> String {
         let first = &self.rows[0];
-        let (baseline, rounds) = (self.baselines().join("; "), first.repeat);
+        let baselines: Vec<&str> = self.baselines().into_iter().map(|variant| self.title(variant)).collect();
+        let (baseline, rounds) = (baselines.join("; "), first.repeat);
         let told = match rounds {
             few if few < LEAST_PAIRS => {
                 format!("below {LEAST_PAIRS} rounds no interval is printed, and no two rows are told apart")
@@ -180,6 +181,11 @@ impl Summary {
         names
     }
 
+    /// What tables call the row of a variant.
+    fn title<'a>(&'a self, variant: &'a str) -> &'a str {
+        self.rows.iter().find(|row| row.variant == variant).map_or(variant, BenchRow::title)
+    }
+
     /// What errors are against: the reference that was asked for, else the plain form of the first technique that has
     /// one.
     fn reference(&self) -> Option<String> {
@@ -190,15 +196,18 @@ impl Summary {
 
     fn notes(&self) -> Vec<String> {
         let skipped =
-            self.rows.iter().filter_map(|row| Some(format!("skipped {}: {}", row.variant, row.skipped.as_ref()?)));
-        self.best.iter().map(Best::sentence).chain(self.untold()).chain(self.busy()).chain(skipped).collect()
+            self.rows.iter().filter_map(|row| Some(format!("skipped {}: {}", row.title(), row.skipped.as_ref()?)));
+        let named = self.rows.iter().filter_map(|row| Some(format!("{}: {}", row.name.as_ref()?, row.variant)));
+        let found = self.best.iter().map(Best::sentence).chain(self.untold()).chain(self.busy());
+        named.chain(found).chain(skipped).collect()
     }
 
     /// Rows that are in the Pareto set because there were too few rounds.
     fn untold(&self) -> Option<String> {
         let pair = |row: &BenchRow| {
             let rivals = row.pareto_not_told_from.as_ref()?;
-            Some(format!("{} ({})", row.variant, rivals.join(", ")))
+            let rivals: Vec<&str> = rivals.iter().map(|rival| self.title(rival)).collect();
+            Some(format!("{} ({})", row.title(), rivals.join(", ")))
         };
         let pairs: Vec<String> = self.rows.iter().filter_map(pair).collect();
         let which = pairs.join("; ");
@@ -276,6 +285,28 @@ mod tests {
         assert!(lines.len() == 1 && lines[0].starts_with("a "), "{text}");
         assert!(summary.markdown().contains("| variant | median ms |"), "{}", summary.markdown());
         assert_eq!(summary.json()["rows"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn a_row_is_called_by_its_name_and_the_name_is_told() {
+        let named = |row: BenchRow, name: &str| BenchRow { name: Some(name.to_owned()), ..row };
+        let skipped = BenchRow { skipped: Some("it cannot be".to_owned()), ratio: None, ..row("c=3", 0.0, 0.0) };
+        let rows =
+            vec![named(row("a", 1.0, 0.0), "first"), named(row("b=2", 1.05, 0.1), "other"), named(skipped, "last")];
+        let summary = Summary::new(What::Frame, &[], rows, &[]);
+        let text = summary.text();
+        assert!(text.contains("time ratios to first, of 5 rounds"), "{text}");
+        assert!(text.contains("\nother: b=2\n") && text.contains("skipped last: it cannot be"), "{text}");
+        assert!(text.contains("is faster: other (first)"), "{text}");
+        let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("other  ")).collect();
+        assert!(lines.len() == 1 && !lines[0].contains("b=2"), "{text}");
+        // What other programs look rows up by stays what is measured.
+        let json = summary.json();
+        assert_eq!((&json["baseline"], &json["rows"][1]["variant"]), (&json!("a"), &json!("b=2")));
+        assert_eq!(
+            (&json["rows"][1]["name"], &json["rows"][1]["pareto_not_told_from"]),
+            (&json!("other"), &json!(["a"]))
+        );
     }
 
     #[test]

@@ -18,6 +18,34 @@ impl Axis {
 /// A combination: a value for each axis, in the axes' order.
 pub type Point = Vec<(String, String)>;
 
+/// What a row is of, and what it is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedPoint {
+    /// None: its label. Points of the grid have none.
+    pub name: Option<String>,
+    pub point: Point,
+}
+
+/// What a point without settings is called.
+const DEFAULTS: &str = "defaults";
+
+/// A name's longest: it is the first column of tables.
+const MOST_NAME_CHARS: usize = 64;
+
+/// Errors: `name` cannot be a point's (exit code 2). One that can is told from `KEY=VALUE`, and stands in a table as it is.
+pub fn require_name(name: &str) -> Result<()> {
+    let is_of_name = |letter: char| letter.is_alphanumeric() || "-_.".contains(letter);
+    if name == DEFAULTS {
+        return Err(Error::request(format!("name {name:?}: a row without settings of its own is called so")));
+    }
+    if name.is_empty() || name.chars().count() > MOST_NAME_CHARS || !name.chars().all(is_of_name) {
+        let why =
+            format!("name {name:?}: it must be 1 to {MOST_NAME_CHARS} letters, digits, dashes, underscores and dots");
+        return Err(Error::request(why).note("for example --point \"as-published: size=640x360 seed=2\""));
+    }
+    Ok(())
+}
+
 /// Reads `KEY=V,V,...`.
 ///
 /// Errors: no key, no value, or a key given twice (exit code 2).
@@ -60,15 +88,21 @@ pub fn grid(axes: &[Axis]) -> Vec<Point> {
     })
 }
 
-/// Reads `KEY=VALUE KEY=VALUE`.
+/// Reads `KEY=VALUE KEY=VALUE`, or `NAME: KEY=VALUE KEY=VALUE`.
 ///
-/// Errors: a word is no such pair, or a key is given twice (exit code 2).
-pub fn point(text: &str) -> Result<Point> {
+/// Errors: a word is no such pair, a key is given twice, or the name cannot be one (exit code 2).
+pub fn point(text: &str) -> Result<NamedPoint> {
     let wrong = |why: &str| {
         Error::request(format!("--point {text:?}: {why}")).note("for example --point \"size=640x360 seed=2\"")
     };
+    // Values may hold colons, keys and names do not.
+    let (name, pairs) = match text.split_once(':').filter(|(before, _)| !before.contains('=')) {
+        Some((name, pairs)) => (Some(name.trim().to_owned()), pairs),
+        None => (None, text),
+    };
+    name.iter().try_for_each(|name| require_name(name)).map_err(|error| error.within(format!("--point {text:?}")))?;
     let mut point = Point::new();
-    for word in text.split_whitespace() {
+    for word in pairs.split_whitespace() {
         let (key, value) = word.split_once('=').ok_or_else(|| wrong("it must be KEY=VALUE KEY=VALUE"))?;
         let key = key.trim_start_matches("--");
         if point.iter().any(|(known, _)| known == key) {
@@ -76,26 +110,32 @@ pub fn point(text: &str) -> Result<Point> {
         }
         point.push((key.to_owned(), value.to_owned()));
     }
-    if point.is_empty() { Err(wrong("it is empty")) } else { Ok(point) }
+    if point.is_empty() { Err(wrong("it sets nothing")) } else { Ok(NamedPoint { name, point }) }
 }
 
 /// The grid, and `points` behind it.
 ///
-/// Errors: one of them is there already (exit code 2).
-pub fn with_points(mut grid: Vec<Point>, points: &[Point]) -> Result<Vec<Point>> {
-    for point in points {
-        if grid.contains(point) {
-            return Err(Error::request(format!("--point \"{}\": this row is there already", label(point))));
+/// Errors: one of them, or its name, is there already (exit code 2).
+pub fn with_points(grid: Vec<Point>, points: &[NamedPoint]) -> Result<Vec<NamedPoint>> {
+    let mut all: Vec<NamedPoint> = grid.into_iter().map(|point| NamedPoint { name: None, point }).collect();
+    for NamedPoint { name, point } in points {
+        let refused = |why: String| Err(Error::request(format!("--point \"{}\": {why}", label(point))));
+        if all.iter().any(|known| known.point == *point) {
+            return refused("this row is there already".to_owned());
         }
-        grid.push(point.clone());
+        if let Some(other) = all.iter().find(|known| name.is_some() && known.name == *name) {
+            let name = name.as_deref().unwrap_or_default();
+            return refused(format!("the name {name} is that of {}", label(&other.point)));
+        }
+        all.push(NamedPoint { name: name.clone(), point: point.clone() });
     }
-    Ok(grid)
+    Ok(all)
 }
 
 /// `key=value key=value`, for tables; `defaults` without axes.
 pub fn label(point: &Point) -> String {
     if point.is_empty() {
-        return "defaults".to_owned();
+        return DEFAULTS.to_owned();
     }
     point.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" ")
 }
@@ -109,18 +149,18 @@ pub struct Part {
     pub points: Vec<usize>,
 }
 
-/// The parts of `grid` that `text`, `KEY=VALUE KEY=VALUE`, makes of it: where it names several points, because it leaves axes
-/// out, each is the baseline of the points that have its values of those axes. One part without a text.
+/// The parts of `grid` that `text`, `KEY=VALUE KEY=VALUE` or a point's name, makes of it: where it names several points, because
+/// it leaves axes out, each is the baseline of the points that have its values of those axes. One part without a text.
 ///
 /// Errors: no point is named (exit code 2).
-pub fn parts(grid: &[Point], text: Option<&str>) -> Result<Vec<Part>> {
+pub fn parts(grid: &[NamedPoint], text: Option<&str>) -> Result<Vec<Part>> {
     let all = || (0..grid.len()).collect();
     let Some(text) = text else { return Ok(vec![Part { baseline: None, points: all() }]) };
     let (named, keys) = baselines(grid, text)?;
     if let [one] = named[..] {
         return Ok(vec![Part { baseline: Some(one), points: all() }]);
     }
-    let others = |index: usize| grid[index].iter().filter(|(key, _)| !keys.contains(key)).collect::<Vec<_>>();
+    let others = |index: usize| grid[index].point.iter().filter(|(key, _)| !keys.contains(key)).collect::<Vec<_>>();
     let part = |baseline: usize| {
         let points = (0..grid.len()).filter(|index| others(*index) == others(baseline)).collect();
         Part { baseline: Some(baseline), points }
@@ -131,25 +171,27 @@ pub fn parts(grid: &[Point], text: Option<&str>) -> Result<Vec<Part>> {
 /// The points that `text` names, and the keys that it has.
 ///
 /// Errors: it names none (exit code 2).
-fn baselines(grid: &[Point], text: &str) -> Result<(Vec<usize>, Vec<String>)> {
+fn baselines(grid: &[NamedPoint], text: &str) -> Result<(Vec<usize>, Vec<String>)> {
+    const FORM: &str = "it must be KEY=VALUE KEY=VALUE, or the name of a point";
     let wrong = |why: &str| {
-        let first = grid.first().map(label).unwrap_or_default();
+        let first = grid.first().map(|first| label(&first.point)).unwrap_or_default();
         Error::request(format!("--baseline {text:?}: {why}")).note(format!("for example --baseline \"{first}\""))
     };
     // A value may hold spaces, as names of cameras do: what a table shows is always understood.
-    if let Some(index) = grid.iter().position(|point| label(point) == text) {
+    let is_named = |known: &NamedPoint| known.name.as_deref() == Some(text) || label(&known.point) == text;
+    if let Some(index) = grid.iter().position(is_named) {
         return Ok((vec![index], Vec::new()));
     }
     let mut named = Vec::new();
     for word in text.split_whitespace() {
-        let (key, value) = word.split_once('=').ok_or_else(|| wrong("it must be KEY=VALUE KEY=VALUE"))?;
+        let (key, value) = word.split_once('=').ok_or_else(|| wrong(FORM))?;
         named.push((key.trim_start_matches("--").to_owned(), value.to_owned()));
     }
-    if named.is_empty() && grid.iter().any(|point| !point.is_empty()) {
-        return Err(wrong("it must be KEY=VALUE KEY=VALUE"));
+    if named.is_empty() && grid.iter().any(|known| !known.point.is_empty()) {
+        return Err(wrong(FORM));
     }
     let found: Vec<usize> =
-        (0..grid.len()).filter(|index| named.iter().all(|pair| grid[*index].contains(pair))).collect();
+        (0..grid.len()).filter(|index| named.iter().all(|pair| grid[*index].point.contains(pair))).collect();
     match found[..] {
         [] => Err(wrong("the sweep has no such combination")),
         _ => Ok((found, named.into_iter().map(|(key, _)| key).collect())),
@@ -180,7 +222,8 @@ mod tests {
 
     #[test]
     fn a_baseline_names_one_point_of_the_grid_or_one_of_each_part() {
-        let grid = grid(&axes(&["split=none,one-pass".to_owned(), "kernel=5,7".to_owned()]).unwrap());
+        let axes = axes(&["split=none,one-pass".to_owned(), "kernel=5,7".to_owned()]).unwrap();
+        let grid = with_points(super::grid(&axes), &[]).unwrap();
         let part = |baseline: usize, points: &[usize]| Part { baseline: Some(baseline), points: points.to_vec() };
         for (text, expected) in [
             ("kernel=7 split=none", vec![part(1, &[0, 1, 2, 3])]),
@@ -194,7 +237,39 @@ mod tests {
             let error = parts(&grid, Some(text)).unwrap_err();
             assert!(error.exit_code() == 2 && error.message().contains(why), "{error}");
         }
-        assert_eq!(parts(&super::grid(&[]), Some("")).unwrap(), [part(0, &[0])]);
+        assert_eq!(parts(&with_points(super::grid(&[]), &[]).unwrap(), Some("")).unwrap(), [part(0, &[0])]);
         assert_eq!(parts(&grid, None).unwrap(), [Part { baseline: None, points: vec![0, 1, 2, 3] }]);
+    }
+
+    #[test]
+    fn a_point_may_have_a_name_that_names_a_baseline() {
+        let read = |text: &str| point(text).unwrap();
+        let pairs = vec![("kernel".to_owned(), "7".to_owned()), ("camera".to_owned(), "a:b".to_owned())];
+        assert_eq!(read("kernel=7 --camera=a:b"), NamedPoint { name: None, point: pairs.clone() });
+        let named = NamedPoint { name: Some("as-in_2.1".to_owned()), point: pairs };
+        assert_eq!(read("as-in_2.1: kernel=7 camera=a:b"), named);
+        assert_eq!(read(" as-in_2.1 :kernel=7 camera=a:b"), named);
+
+        let axes = axes(&["split=none,one-pass".to_owned()]).unwrap();
+        let all = with_points(grid(&axes), std::slice::from_ref(&named)).unwrap();
+        for text in ["as-in_2.1", "kernel=7", "kernel=7 camera=a:b"] {
+            let expected = Part { baseline: Some(2), points: vec![0, 1, 2] };
+            assert_eq!(parts(&all, Some(text)).unwrap(), [expected], "{text}");
+        }
+        let error = parts(&all, Some("as-in_2.2")).unwrap_err();
+        assert!(error.message().contains("the name of a point"), "{error}");
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_refused() {
+        let long = "x".repeat(65);
+        for name in ["", "a b", "a,b", "a|b", "a/b", "a\nb", "defaults", &long] {
+            let error = point(&format!("{name}: kernel=7")).unwrap_err();
+            assert!(error.exit_code() == 2 && error.message().contains("name"), "{name:?}: {error}");
+        }
+        assert!(point("a:").unwrap_err().message().contains("it sets nothing"));
+        let [one, other] = ["a: kernel=7", "a: kernel=9"].map(|text| point(text).unwrap());
+        let error = with_points(grid(&[]), &[one, other]).unwrap_err();
+        assert!(error.message().contains("the name a is that of kernel=7"), "{error}");
     }
 }

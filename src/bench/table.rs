@@ -10,7 +10,7 @@ use crate::units::Bytes;
 /// Mark of the Pareto set.
 pub const MARK: &str = "*";
 
-/// How much of a variant's name a table shows: kept rows come from a file, and a column is padded to 65,535 at most.
+/// How much of what a row is called a table shows: kept rows come from a file, and a column is padded to 65,535 at most.
 const MOST_NAME_CHARS: usize = 1000;
 
 /// What a column says of a row; None where it says nothing.
@@ -34,7 +34,7 @@ impl Column {
     }
 }
 
-/// Title and cells, all rows of one length; the first column is the variant's name.
+/// Title and cells, all rows of one length; the first column is what a row is called.
 pub struct Table {
     lines: Vec<Vec<String>>,
 }
@@ -131,7 +131,7 @@ impl Table {
         let titles = std::iter::once("variant").chain(columns.iter().map(|column| column.title));
         let mut lines = vec![titles.map(str::to_owned).collect::<Vec<_>>()];
         for row in measured() {
-            let name = row.variant.chars().take(MOST_NAME_CHARS).collect();
+            let name = row.title().chars().take(MOST_NAME_CHARS).collect();
             let cells = columns.iter().map(|column| (column.cell)(row).unwrap_or_else(|| "-".to_owned()));
             lines.push(std::iter::once(name).chain(cells).collect());
         }

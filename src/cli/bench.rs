@@ -93,8 +93,8 @@ fn sub_command(what: What) -> Command {
                 .long("baseline")
                 .value_name("KEY=V ...")
                 .help(
-                    "Combination that ratios are relative to; if it leaves axes out, one for each of their points; default: \
-                     the first that is possible",
+                    "Combination that ratios are relative to, or the NAME of a --point; if it leaves axes out, one for each of \
+                     their points; default: the first that is possible",
                 ),
         )
         .arg(output::repeat_flag("Number of rounds, each of which measures every combination of a group once; intervals need three"))
@@ -112,8 +112,8 @@ fn sub_command(what: What) -> Command {
         ))
         .arg(output::folder_flag("Folder to write rows.jsonl, rows.csv, summary.json, summary.md and index.html to"))
         .arg(
-            Arg::new("point").long("point").value_name("KEY=V KEY=V").action(ArgAction::Append).help(
-                "A row beside the grid, with these settings; may be repeated",
+            Arg::new("point").long("point").value_name("[NAME:] KEY=V KEY=V").action(ArgAction::Append).help(
+                "A row beside the grid, with these settings, and what tables call it; may be repeated",
             ),
         )
         .arg(Arg::new("until-interval").long("until-interval").value_name("PART").value_parser(part).help(format!(
@@ -160,7 +160,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     axes.iter().try_for_each(|axis| require_known("sweep", &axis.key))?;
     let points = matches.get_many::<String>("point").into_iter().flatten();
     let points = points.map(|text| sweep::point(text)).collect::<Result<Vec<_>>>()?;
-    points.iter().flatten().try_for_each(|(key, _)| require_known("point", key))?;
+    points.iter().flat_map(|named| &named.point).try_for_each(|(key, _)| require_known("point", key))?;
     let conditions = matches.get_many::<String>("fail-if").into_iter().flatten();
     let conditions = conditions.map(|text| Condition::parse(text)).collect::<Result<Vec<_>>>()?;
     let rate = matches.get_one::<String>("rate").map(|key| rates::axis(key, &axes)).transpose()?;

@@ -3,6 +3,7 @@
 
 use super::output::{folder_flag, quiet_flag};
 use crate::bench::shard::Shard;
+use crate::bench::sweep;
 use crate::error::{Error, Result};
 use crate::settings::scalar::Scalar;
 use crate::whole_file::read_toml;
@@ -39,7 +40,15 @@ struct Sweep {
     /// The axes of the grid.
     sweep: IndexMap<String, Vec<Scalar>>,
     /// Rows beside the grid.
-    point: Vec<IndexMap<String, Scalar>>,
+    point: Vec<Point>,
+}
+
+#[derive(Deserialize)]
+struct Point {
+    /// As `--point` has it; no setting has this key.
+    name: Option<String>,
+    #[serde(flatten)]
+    settings: IndexMap<String, Scalar>,
 }
 
 /// `--shard I/N`, of all that measures rows.
@@ -59,7 +68,7 @@ pub fn command() -> Command {
         .after_help(
             "The file is TOML: bench, scenes, technique, preset, repeat, until-interval, group, baseline, fair, frames, rate, reference, \
              reference-spp, fail-if; [settings] of all rows; [sweep] with a list for each axis; [[point]] for each row beside the \
-             grid.",
+             grid, whose name is what tables call it.",
         )
         .arg(Arg::new("file").value_name("FILE.toml").required(true).value_parser(value_parser!(PathBuf)))
         .arg(folder_flag("Folder for results; of several scenes with a folder in it for each").required(true))
@@ -78,7 +87,7 @@ pub fn commands(matches: &ArgMatches) -> Result<Vec<Vec<String>>> {
     let path = matches.get_one::<PathBuf>("file").expect("clap requires it");
     let sweep: Sweep = read_toml(path)?;
     let folder = matches.get_one::<PathBuf>("output").expect("clap requires it");
-    let words = sweep.words(matches);
+    let words = sweep.words(matches).map_err(|error| error.within(path.display()))?;
     let scenes: Vec<Option<&str>> = match &sweep.scenes[..] {
         [] => vec![None],
         scenes => scenes.iter().map(|scene| Some(scene.as_str())).collect(),
@@ -111,7 +120,9 @@ fn stem(scene: &str) -> String {
 
 impl Sweep {
     /// What follows the scene, of the file and of the flags beside it.
-    fn words(&self, matches: &ArgMatches) -> Vec<String> {
+    ///
+    /// Errors: a point's name cannot be one (exit code 2).
+    fn words(&self, matches: &ArgMatches) -> Result<Vec<String>> {
         let mut words: Vec<String> = Vec::new();
         let mut flag = |name: &str, value: &dyn fmt::Display| words.extend([format!("--{name}"), value.to_string()]);
         for (name, value) in [
@@ -134,14 +145,26 @@ impl Sweep {
             let values: Vec<String> = values.iter().map(Scalar::to_string).collect();
             flag("sweep", &format!("{key}={}", values.join(",")));
         }
-        for point in &self.point {
-            let pairs: Vec<String> = point.iter().map(|(key, value)| format!("{key}={value}")).collect();
-            flag("point", &pairs.join(" "));
+        for Point { name, settings } in &self.point {
+            name.iter().try_for_each(|name| sweep::require_name(name)).map_err(|error| error.within("[[point]]"))?;
+            let pairs = settings.iter().map(|(key, value)| format!("{key}={value}"));
+            flag("point", &name.iter().map(|name| format!("{name}:")).chain(pairs).collect::<Vec<_>>().join(" "));
         }
         matches.get_one::<String>("device").iter().for_each(|value| flag("device", value));
         matches.get_one::<Shard>("shard").iter().for_each(|shard| flag("shard", shard));
         let set = ["resume", "force", "quiet", "json"].into_iter().filter(|name| matches.get_flag(name));
         words.extend(set.chain(self.fair.then_some("fair")).map(|name| format!("--{name}")));
-        words
+        Ok(words)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::techniques::{self, settings_of};
+
+    #[test]
+    fn no_setting_is_called_as_what_names_a_point() {
+        let mut settings = techniques::ALL.iter().flat_map(|technique| settings_of(*technique));
+        assert!(settings.all(|setting| setting.key != "name"));
     }
 }

@@ -271,7 +271,8 @@ mod tests {
                 let sweeps: Vec<String> = matches.get_many::<String>("sweep").into_iter().flatten().cloned().collect();
                 let axes = sweep::axes(&sweeps)?;
                 axes.iter().try_for_each(|axis| require_known("sweep", &axis.key))?;
-                sweep::parts(&sweep::grid(&axes), matches.get_one::<String>("baseline").map(String::as_str))?;
+                let grid = sweep::with_points(sweep::grid(&axes), &[])?;
+                sweep::parts(&grid, matches.get_one::<String>("baseline").map(String::as_str))?;
                 let has_stage = job.technique.bench_stages().iter().any(|stage| stage.name == what);
                 if what != "frame" && !has_stage {
                     return Err(Error::request(format!("there is no stage {what}")));

@@ -19,7 +19,7 @@ use crate::bench::group::MOST_VARIANTS;
 use crate::bench::row::BenchRow;
 use crate::bench::rows_file::RowsFile;
 use crate::bench::run::{self, Observer};
-use crate::bench::sweep::{Point, label};
+use crate::bench::sweep::{NamedPoint, Point, label};
 use crate::bench::what::What;
 use crate::error::{Error, Result};
 use crate::progress::{Stage, say};
@@ -61,8 +61,9 @@ fn settle(
                 places.push(place);
             }
         });
-        let points: Vec<Point> = places.iter().map(|place| space.points[*place].clone()).collect();
-        let named = label(&points[0]);
+        let point = |place: &usize| NamedPoint { name: None, point: space.points[*place].clone() };
+        let points: Vec<NamedPoint> = places.iter().map(point).collect();
+        let named = label(&points[0].point);
         say(format!("fastest so far: {named}; {} others beside it", places.len() - 1));
         let bench = run::Request {
             job: request.job,

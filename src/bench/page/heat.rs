@@ -58,7 +58,7 @@ fn map(down: &Axis, across: &Axis, has_others: bool, rows: &[BenchRow]) -> Optio
                         @let left = LABELS + column as f64 * CELL[0];
                         @if let Some((row, ratio)) = cell(y, x) {
                             rect.ours x=(left + 1.0) y=(top + 1.0) width=(CELL[0] - 2.0) height=(CELL[1] - 2.0) fill-opacity=(format!("{:.3}", 0.6 * strength(ratio))) {}
-                            text.tick.cell x=(left + 0.5 * CELL[0]) y=(top + 17.0) { (format!("{ratio:.3}")) title { (row.variant) } }
+                            text.tick.cell x=(left + 0.5 * CELL[0]) y=(top + 17.0) { (format!("{ratio:.3}")) title { (row.title()) } }
                         } @else {
                             text.tick x=(left + 0.5 * CELL[0]) y=(top + 17.0) { "–" }
                         }

@@ -63,8 +63,8 @@ fn pictures(shown: &Shown<'_>) -> Result<Markup> {
     for row in shown.rows {
         let Some(file) = picture_file(shown.folder, row).filter(|file| file.is_file()) else { continue };
         match files.iter_mut().find(|(_, known)| *known == file) {
-            Some((title, _)) => title.push_str(&format!("; {}", row.variant)),
-            None => files.push((row.variant.clone(), file)),
+            Some((title, _)) => title.push_str(&format!("; {}", row.title())),
+            None => files.push((row.title().to_owned(), file)),
         }
     }
     let markup = pictures::markup(files.iter().map(|(title, path)| (title.as_str(), path.clone())))?;
@@ -80,7 +80,7 @@ fn rows(rows: &[BenchRow]) -> Markup {
     columns.push(("why it was not measured", false));
     let word = |text: &str| (html! { (text) }, None);
     let row = |row: &BenchRow| {
-        let mut cells = vec![word(&row.variant), word(if row.pareto == Some(true) { table::MARK } else { "" })];
+        let mut cells = vec![word(row.title()), word(if row.pareto == Some(true) { table::MARK } else { "" })];
         cells.extend(NUMBERS.iter().map(|(_, read)| number(read(row))));
         let errors = row.best_known_errors();
         cells

@@ -59,7 +59,7 @@ fn point<'a>(measure: &Measure, row: &'a BenchRow) -> Option<Point<'a>> {
     let ratio = row.ratio.as_ref()?;
     let error = Some((measure.value)(row.best_known_errors()?)).filter(|error| error.is_finite())?;
     Some(Point {
-        name: &row.variant,
+        name: row.title(),
         time: ratio.mean,
         interval: row.interval().unwrap_or([ratio.mean; 2]),
         error,
