@@ -65,18 +65,21 @@ fuzz_target!(init: quincunx_fuzz::seeds::write_if_asked("settings"), |input: (u8
             }
         }
         2 => {
+            if let Err(error) = sweep::point(&text) {
+                require_request(&error);
+            }
             let texts: Vec<String> = text.split('\n').map(str::to_owned).collect();
             match sweep::axes(&texts) {
                 Err(error) => require_request(&error),
                 Ok(axes) => {
                     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.values.len()));
                     if count.is_some_and(|count| count <= MOST_POINTS) {
-                        let grid = sweep::grid(&axes);
+                        let grid = sweep::with_points(sweep::grid(&axes), &[]).unwrap();
                         assert_eq!(Some(grid.len()), count);
-                        let named = usize::from(which) % grid.len();
-                        assert_eq!(sweep::label(&grid[sweep::baseline(&grid, &sweep::label(&grid[named])).unwrap()]),
-                            sweep::label(&grid[named]));
-                        if let Err(error) = sweep::baseline(&grid, &texts[0]) {
+                        let named = sweep::label(&grid[usize::from(which) % grid.len()].point);
+                        let found = sweep::parts(&grid, Some(&named)).unwrap()[0].baseline.unwrap();
+                        assert_eq!(sweep::label(&grid[found].point), named);
+                        if let Err(error) = sweep::parts(&grid, Some(&texts[0])) {
                             require_request(&error);
                         }
                     }
