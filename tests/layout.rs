@@ -332,6 +332,7 @@ fn vertices_that_several_pipelines_place_are_invariant() {
         // Corners are constants.
         "passes/fullscreen",
         // One pipeline of a frame draws with it.
+        "bench/device/triangles",
         "techniques/deep_shading/baseline/msaa",
         "techniques/deep_shading/shade/corner",
         "techniques/deep_shading/shade/geometry",

@@ -1,14 +1,15 @@
-//! `quincunx bench device`: what a device does with memory, and passes of reports held against it.
+//! `quincunx bench device`: what a device does with memory and triangles, and passes of reports held against it.
 
 use super::output::{self, print, print_text, quiet_flag};
 use super::progress;
+use crate::bench::device;
 use crate::bench::device::explained::{self, Explained};
-use crate::bench::device::{self, WorkRow};
 use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::fail_on_validation;
 use crate::progress::Stage;
 use crate::report::run::RunReport;
+use crate::report::work_row::WorkRow;
 use crate::units::Bytes;
 use crate::whole_file::read_document;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -25,7 +26,7 @@ const MOST_BYTES: u64 = 512 << 20;
 pub fn command() -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     Command::new(NAME)
-        .about("What the device does with memory: clears, copies, reads and writes, far words, words in no order, atomics")
+        .about("What the device does with memory and triangles: clears, copies, reads and writes, far words, words in no order, atomics, draws")
         .arg(
             Arg::new("bytes")
                 .long("bytes")

@@ -9,3 +9,4 @@ pub mod run;
 pub mod spread;
 mod text;
 pub mod trace;
+pub mod work_row;

@@ -2,6 +2,7 @@
 
 use crate::support::program::Program;
 use crate::support::watched::{require_silence, watched_device};
+use quincunx::bench::device::triangles::{Drawing, Drawn, Grid};
 use quincunx::bench::device::work::{Buffers, Work, Worked};
 use quincunx::bench::rounds::Probe;
 use quincunx::gpu::Gpu;
@@ -41,6 +42,25 @@ fn each_work_touches_what_it_says() {
     require_silence(&gpu, "bench device");
 }
 
+/// Every pixel lies in one triangle, as the middle of none lies on an edge: it holds the number of the last draw, and of triangles that
+/// are turned away nothing.
+#[test]
+fn triangles_cover_the_pixels_that_they_lie_on() {
+    let gpu = Gpu::open(&watched_device()).unwrap();
+    for (side_px, squares, draws) in [(16, 16, 1), (16, 16, 3), (64, 8, 2), (32, 1, 255), (512, 512, 2)] {
+        let grid = Grid { side_px, squares, draws };
+        for drawn in Drawn::ALL {
+            let drawing = Drawing::new(&gpu, drawn, grid).unwrap();
+            assert_eq!(drawing.measure().unwrap().len(), 1);
+            let number = if drawn == Drawn::TurnedAway { 0 } else { draws as u8 };
+            let target = drawing.target(&gpu).unwrap();
+            let others = target.iter().filter(|pixel| **pixel != number).count();
+            assert_eq!((target.len(), others), ((side_px * side_px) as usize, 0), "{drawn:?} of {grid:?}");
+        }
+    }
+    require_silence(&gpu, "triangles of bench device");
+}
+
 #[test]
 fn passes_are_a_share_of_what_the_device_can_do() {
     let program = Program::new();
@@ -76,7 +96,7 @@ fn passes_are_a_share_of_what_the_device_can_do() {
         program.run(&words).fine().out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let (rows, of_reports) = lines.split_at(lines.len() - 1);
     let works: Vec<&str> = rows.iter().map(|row| row["work"].as_str().unwrap()).collect();
-    assert_eq!(works.len(), 11, "{works:?}");
+    assert_eq!(works.len(), 14, "{works:?}");
     for row in rows {
         let number = |key: &str| row[key].as_f64().unwrap();
         let median = row["ms"]["median"].as_f64().unwrap();
@@ -84,7 +104,18 @@ fn passes_are_a_share_of_what_the_device_can_do() {
         assert!((number("gb_per_s") - moved / median / 1e6).abs() < 1e-6 * number("gb_per_s"), "{row}");
         assert_eq!(row["ms"]["samples"].as_array().unwrap().len(), 2);
     }
-    let rate = |work: &str| rows.iter().find(|row| row["work"] == work).unwrap()["gb_per_s"].as_f64().unwrap();
+    let row = |work: &str| rows.iter().find(|row| row["work"] == work).unwrap();
+    for (work, key, count) in [
+        ("triangles", "triangles_per_s", 8 * 2 * 512 * 512),
+        ("triangles turned away", "triangles_per_s", 8 * 2 * 512 * 512),
+        ("fill", "pixels_per_s", 64 * 2048 * 2048),
+    ] {
+        let rate = 1e3 * f64::from(count) / row(work)["ms"]["median"].as_f64().unwrap();
+        assert!((row(work)[key].as_f64().unwrap() - rate).abs() < 1e-6 * rate, "{}", row(work));
+    }
+    let has_rate = |row: &&Value| !row["triangles_per_s"].is_null() || !row["pixels_per_s"].is_null();
+    assert_eq!(rows.iter().filter(has_rate).count(), 3);
+    let rate = |work: &str| row(work)["gb_per_s"].as_f64().unwrap();
     let report: Value = serde_json::from_str(&std::fs::read_to_string(program.path("report.json")).unwrap()).unwrap();
     let passes = of_reports[0]["passes"].as_array().unwrap();
     assert!(passes.len() > 4, "{passes:?}");

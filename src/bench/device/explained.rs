@@ -1,9 +1,9 @@
 //! Passes of a report held against what the device can do: the least time that their bytes take, as a share of the time that they took.
 
-use super::WorkRow;
 use crate::bench::table::Table;
 use crate::error::{Error, Result};
 use crate::report::run::{PassRow, RunReport};
+use crate::report::work_row::WorkRow;
 use serde::Serialize;
 
 /// Shares above this are impossible: what is measured here is not exact.

@@ -14,8 +14,8 @@ use ash::vk;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Ledger group of the buffers.
-const GROUP: &str = "bench";
+/// Ledger group of what is measured.
+pub(super) const GROUP: &str = "bench";
 /// Invocations of what touches single words, at most.
 const MOST_WORDS: u64 = 1 << 22;
 
