@@ -153,7 +153,7 @@ impl Drawing {
         let description = ImageDescription::plain(grid.extent(), FORMAT, 1, usage);
         let target = Image::at(gpu, "bench.device.drawn", GROUP, description, Berth::Own)?;
         let mut cmd = Commands::begin(gpu, "bench", Submits::PerPass)?;
-        let [read_bytes, written_bytes] = drawn.moved_bytes(grid);
+        let [read_bytes, written_bytes] = drawn.moved_bytes(grid).map(Some);
         cmd.pass("bench.device", Traffic { read_bytes, written_bytes, invocations: None }, |cmd| {
             cmd.barriers([target.discard(Access::ColorWrite)]);
             let clear = vk::ClearColorValue { uint32: [0; 4] };
