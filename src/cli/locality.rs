@@ -121,7 +121,7 @@ pub fn command() -> Command {
                 .value_name("DIR")
                 .action(ArgAction::Append)
                 .value_parser(value_parser!(PathBuf))
-                .help("Folder with rows of `bench split` or `bench gather`, whose times stand beside the counts; may be repeated"),
+                .help("Folder with rows of `bench split`, `gather`, `shade` or `filter`, whose times stand beside the counts; may be repeated"),
         )
         .arg(output::folder_flag("Folder to write locality.json and locality.txt to"))
         .arg(quiet_flag())
@@ -165,7 +165,7 @@ fn axes(sweeps: &[String], stages: &[StageKind]) -> Result<Vec<Axis>> {
         return Ok(AXES.iter().map(|(key, values)| Axis::new(key, values)).collect());
     }
     let axes = sweep::axes(sweeps)?;
-    let names = |stages: &[StageKind]| stages.iter().map(|stage| stage.name()).collect::<Vec<_>>().join(", ");
+    let names = |stages: &[StageKind]| stages.iter().map(|stage| stage.name()).collect::<Vec<_>>().join(",");
     let know = |key: &str| -> Vec<StageKind> {
         StageKind::ALL.iter().copied().filter(|stage| stage.keys().contains(&key)).collect()
     };
@@ -177,7 +177,7 @@ fn axes(sweeps: &[String], stages: &[StageKind]) -> Result<Vec<Axis>> {
             let others = know(&axis.key);
             let elsewhere =
                 if others.is_empty() { String::new() } else { format!("; --stage {} knows it", names(&others)) };
-            Err(Error::request(format!("--sweep {}: {} knows no such key", axis.key, names(stages)))
+            Err(Error::request(format!("--sweep {}: --stage {} knows no such key", axis.key, names(stages)))
                 .note(format!("there are {}{elsewhere}", keys.join(", "))))
         }
         None => Ok(axes),

@@ -9,14 +9,14 @@ use crate::units::Extent;
 use serde::Serialize;
 
 choices! {
-    /// A stage (`--stage`).
+    /// A stage (`--stage`), in the order of a frame.
     pub enum StageKind {
         /// The G-buffer into sub-buffers.
         "split" => Split,
-        /// Irradiance back to the frame.
-        "gather" => Gather,
         /// Virtual point lights at each pixel.
         "shade" => Shade,
+        /// Irradiance back to the frame.
+        "gather" => Gather,
         /// Discontinuities, and the filter that stops at them.
         "filter" => Filter,
         /// Samples' triangles into the lists of deep shading.

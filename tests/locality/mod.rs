@@ -248,7 +248,7 @@ fn what_cannot_be_counted_is_refused() {
         (&["--seed", "2"], &["--drawn"]),
         (&["--stage", "composite"], &["composite", "insert"]),
         (&["--stage", "split", "--drawn", "5"], &["--stage", "--drawn"]),
-        (&["--sweep", "vpls=64"], &["--sweep vpls: split, gather", "--stage shade knows it"]),
+        (&["--sweep", "vpls=64"], &["--sweep vpls: --stage split,gather", "--stage shade knows it"]),
         (&["--stage", "shade", "--sweep", "split=stencil"], &["split=stencil", "remap, one-pass"]),
         (&["--stage", "shade", "--sweep", "vpls=few"], &["--sweep vpls=few", "a whole number"]),
         (&["--stage", "filter", "--sweep", "filter=none"], &["--sweep filter=none", "no such filter"]),
