@@ -15,6 +15,7 @@ use crate::picture::visible::visible;
 use crate::picture::{Aov, Picture};
 use crate::reference::ReferenceRequest;
 use crate::report::notes;
+use crate::report::roofline::Roofline;
 use crate::report::run::{AovRow, DeviceRow, ImageRow, Passes, Program, RunReport, SCHEMA, SceneRow, Times};
 use crate::resident::SceneStats;
 use crate::scene::{self, AnimationChoice, Model, Scene, Texturing};
@@ -47,6 +48,8 @@ pub struct Job {
     pub device: Option<String>,
     /// One submit for each pass: pass times.
     pub profile: bool,
+    /// What its device can do, for the least time of each pass; with `profile` alone.
+    pub roofline: Option<Roofline>,
     /// What the device counts in each pass.
     pub statistics: bool,
     /// Validation messages are fatal.
@@ -121,6 +124,7 @@ impl Job {
             reference: None,
             device: None,
             profile: false,
+            roofline: None,
             statistics: false,
             validate: false,
             command: Vec::new(),
@@ -284,6 +288,9 @@ impl Job {
     /// What can be refused before anything is loaded.
     pub(crate) fn check(&self) -> Result<()> {
         self.require_read()?;
+        if self.roofline.is_some() && !self.profile {
+            return Err(Error::request("--device-rows: passes have times, to be a share of, with --profile alone"));
+        }
         if let Some(path) = &self.output {
             let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
             if !["png", "exr"].contains(&extension.to_lowercase().as_str()) {
@@ -341,6 +348,8 @@ impl Job {
         // Named as the request names it.
         require_triangle(&scene, &self.scene)?;
         let gpu = Gpu::open(request)?;
+        let is_of = |roofline: &Roofline| roofline.require(&gpu.caps.identity, "--device-rows: this device");
+        self.roofline.as_ref().map_or(Ok(()), is_of)?;
         let scene = self.with_texturing(scene, &gpu.caps);
         Session::on(gpu, scene)
     }
@@ -385,6 +394,7 @@ impl Job {
             clock: renderer.clock(),
         };
         let memory = renderer.touched(session.memory_table(renderer, Some(&rendered.memory))?)?.report();
+        let times = Times::of(&passes, &rendered.times, self.profile).counted(memory.touched.as_ref());
         let counters = renderer.measured_counters()?;
         Ok(RunReport {
             schema: SCHEMA,
@@ -397,7 +407,7 @@ impl Job {
             scene: SceneRow::of(scene, view, lights),
             settings: rendered.settings.clone(),
             aovs: rendered.aovs.iter().map(|aov| AovRow::of(aov, picture.extent)).collect(),
-            times: Times::of(&passes, &rendered.times, self.profile).counted(memory.touched.as_ref()),
+            times: times.under(self.roofline.as_ref()),
             memory,
             counters: counters.into_iter().map(|(key, count)| (key.to_owned(), count)).collect(),
             image: ImageRow::of(picture, path, (!is_exr(path)).then_some(*exposure_ev))?,

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::gpu::{DeviceRequest, Gpu};
 use crate::job::fail_on_validation;
 use crate::progress::Stage;
+use crate::report::roofline::Roofline;
 use crate::report::run::RunReport;
 use crate::report::work_row::WorkRow;
 use crate::units::Bytes;
@@ -42,7 +43,7 @@ pub fn command() -> Command {
                 .value_name("REPORT.json")
                 .action(ArgAction::Append)
                 .value_parser(value_parser!(PathBuf))
-                .help("Say of each pass of a report of render --profile what share of its time its bytes take; may be repeated"),
+                .help("Say of each pass of a report of render --profile what share of its time it takes at least; may be repeated"),
         )
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("Device, by a part of its name or its index in `quincunx devices`"))
         .arg(flag("validate").help("Run under the validation layer; a message fails the command"))
@@ -76,7 +77,8 @@ pub fn run(matches: &ArgMatches) -> Result<()> {
     let rows = device::run(&gpu, bytes, repeat, &mut |done, all| stage.reach(done as u64, all as u64))?;
     drop(stage);
     let explained = |(path, report): &(&PathBuf, RunReport)| {
-        let passes = explained::explained(report, &rows).map_err(|error| error.within(path.display()))?;
+        let held = Roofline::of(&rows).and_then(|roofline| explained::explained(report, &roofline));
+        let passes = held.map_err(|error| error.within(path.display()))?;
         Ok((path.display().to_string(), passes))
     };
     let explained = reports.iter().map(explained).collect::<Result<Vec<(String, Vec<Explained>)>>>()?;

@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::memory::trace::Trace;
 use crate::progress::say;
+use crate::report::roofline::Roofline;
 use crate::report::run::RunReport;
 use crate::report::trace;
 use crate::sequence::Frames;
@@ -56,6 +57,10 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                     .action(ArgAction::SetTrue)
                     .help("Time each pass, with a submit and a fence for each, in three frames after one to warm up"),
             )
+            .arg(path("device-rows", "FILE.jsonl").help(
+                "What `bench device --json` printed of this device: with --profile the report says what share of its time a pass takes at \
+                 least for its bytes, and with --statistics for its triangles and fragments",
+            ))
             .arg(Arg::new("statistics").long("statistics").action(ArgAction::SetTrue).help(
                 "Report what the device counts in each pass: vertices, primitives, shader invocations. Counting may cost time, \
                  and drivers differ in what they count: lavapipe of Mesa 22.3 counts whole blocks of 4x4 pixels",
@@ -79,6 +84,7 @@ pub fn run(matches: &ArgMatches, argv: &[String]) -> Result<()> {
     trace.map_or(Ok(()), |path| require_folder(path))?;
     job.profile = matches.get_flag("profile") || trace.is_some();
     job.statistics = matches.get_flag("statistics");
+    job.roofline = matches.get_one::<PathBuf>("device-rows").map(|path| Roofline::read(path)).transpose()?;
     let record = matches.get_one::<PathBuf>("record-allocations");
     record.map_or(Ok(()), |path| require_folder(path))?;
     job.recorder = record.map(|_| Arc::default());

@@ -5,6 +5,7 @@ pub mod errors;
 pub mod memory;
 pub mod notes;
 pub mod nullable;
+pub mod roofline;
 pub mod run;
 pub mod spread;
 mod text;

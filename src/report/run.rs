@@ -5,6 +5,7 @@ use super::errors::Errors;
 use super::memory::MemoryReport;
 use super::memory::touched::{TouchedReport, TouchedRow};
 use super::nullable::present;
+use super::roofline::{Least, Roofline};
 use super::spread::Spread;
 use crate::caps::Identity;
 use crate::error::Result;
@@ -177,6 +178,9 @@ pub struct PassRow {
     /// What the device counted, by Vulkan's names; None where it was not asked to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub statistics: Option<BTreeMap<String, u64>>,
+    /// The least time that it takes on the device; None where nobody said what the device can do, and of a pass that was not timed.
+    #[serde(flatten)]
+    pub least: Option<Least>,
 }
 
 /// The picture.
@@ -307,6 +311,12 @@ impl PassRow {
     pub fn median_ms(&self) -> Option<f64> {
         Some(self.ms.as_ref()?.as_ref()?.median)
     }
+
+    /// The least time that it takes under `roofline`; None of what was not timed, and where nothing is known of its work.
+    pub fn least_under(&self, roofline: &Roofline) -> Option<Least> {
+        let ms = self.median_ms().filter(|ms| *ms > 0.0)?;
+        roofline.least([self.bytes_read?, self.bytes_written?], self.statistics.as_ref(), ms)
+    }
 }
 
 impl Times {
@@ -370,6 +380,14 @@ impl Times {
                 row.bytes_written = sum(|row| row.asked_written_bytes);
                 row.invocations = Some(Some(pass.invocations));
             }
+        }
+        self
+    }
+
+    /// The same with the least time that each pass takes, where the device's roofline is known.
+    pub fn under(mut self, roofline: Option<&Roofline>) -> Self {
+        if let Some(roofline) = roofline {
+            self.passes.iter_mut().for_each(|pass| pass.least = pass.least_under(roofline));
         }
         self
     }

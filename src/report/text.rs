@@ -15,6 +15,13 @@ fn invocations(pass: &PassRow) -> Option<String> {
     Some(format!("{} invocations", if told.is_empty() { "no".to_owned() } else { told.join(", ") }))
 }
 
+/// What the least time of a pass is of its time; None where it is not known.
+fn share(pass: &PassRow) -> Option<String> {
+    let least = pass.least.as_ref()?;
+    let impossible = if least.is_impossible { ", impossible" } else { "" };
+    Some(format!("{:.1} % by {}{impossible}", 100.0 * least.share, least.bound.name()))
+}
+
 impl RunReport {
     /// The report as text for a reader.
     pub fn text(&self) -> String {
@@ -76,7 +83,7 @@ impl RunReport {
         for pass in &self.times.passes {
             let place = pass.place.as_ref().map_or_else(String::new, |place| format!("  ({place})"));
             let time = pass.median_ms().map(|ms| format!("{ms:>10.3} ms{place}"));
-            let told: Vec<String> = time.into_iter().chain(invocations(pass)).collect();
+            let told: Vec<String> = time.into_iter().chain(share(pass)).chain(invocations(pass)).collect();
             if !told.is_empty() {
                 writeln!(text, "  {:<44} {}", pass.name, told.join("  "))?;
             }
@@ -85,6 +92,12 @@ impl RunReport {
         let warm = if self.times.warmup_frames == 0 { ", first frame, shader compilation included" } else { "" };
         let total = self.times.total_ms.as_ref().map_or(0.0, |total| total.median);
         writeln!(text, "  {:<44} {total:>10.3} ms{software}{warm}", "frame")?;
+        if self.times.passes.iter().any(|pass| pass.least.is_some()) {
+            writeln!(
+                text,
+                "  %: the least time that this device needs for a pass, by what takes it, as a share of the pass's time"
+            )?;
+        }
         self.times.timing_warnings.iter().try_for_each(|warning| writeln!(text, "  note: {warning}"))
     }
 

@@ -2,7 +2,10 @@
 
 use super::spread::Spread;
 use crate::caps::Identity;
+use crate::error::{Error, Result};
+use crate::whole_file::read_document;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
 /// Number of the set of keys.
 pub const SCHEMA: u32 = 1;
@@ -47,5 +50,23 @@ impl WorkRow {
     /// As rows are written: one line, without its end.
     pub fn line(&self) -> String {
         serde_json::to_string(self).expect("its keys are texts")
+    }
+
+    /// The rows of a file, one a line; empty lines are passed over.
+    ///
+    /// Errors: it cannot be read, or a line is no such row (exit code 2).
+    pub fn read(path: &Path) -> Result<Vec<Self>> {
+        let row = |(line, at): (&str, usize)| {
+            let refused = |why: &dyn std::fmt::Display| {
+                Error::request(format!("{}:{at}: it is no row of `bench device`: {why}", path.display()))
+                    .note("`quincunx bench device --json` prints them")
+            };
+            let row: Self = serde_json::from_str(line).map_err(|error| refused(&error))?;
+            if (row.schema, row.bench.as_str()) != (SCHEMA, BENCH) {
+                return Err(refused(&format!("it is of `bench {}`, schema {}", row.bench, row.schema)));
+            }
+            Ok(row)
+        };
+        read_document(path)?.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty()).map(row).collect()
     }
 }
