@@ -341,7 +341,7 @@ mod tests {
         FilterCase { extent, filter, taps: 5, pattern: [2, 2], texels, workgroup: [8, 1] }.checked().unwrap()
     }
 
-    /// Of each pass what it asks for, to read and to write.
+    /// What each pass asks for, to read and to write.
     fn asked(case: &FilterCase) -> Vec<[u64; 2]> {
         let sum = |kernel: &FilterKernel| {
             let mut sum = [0; 2];

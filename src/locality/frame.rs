@@ -21,7 +21,7 @@ pub struct Resource {
     /// A texel, or an entry.
     entry_bytes: u32,
     layout: Layout,
-    /// Of a layer of an image; a buffer has none.
+    /// The extent of an image, or of each of its layers; a buffer has none.
     extent: Extent,
 }
 

@@ -121,9 +121,9 @@ pub struct InsertMemory {
 pub struct Insert {
     spids: Spids,
     pub memory: InsertMemory,
-    /// Of each sample, where its list began when it came.
+    /// Where each sample's list began when it came.
     heads: Vec<u32>,
-    /// Of each sample its node: triangle, and the node after it, or of a stray where its colour is.
+    /// Each sample's node: triangle, and the node after it; a stray's says where its colour is.
     nodes: Vec<[u32; 2]>,
     /// Threads of a warp, which follow each other in a row.
     lanes: u32,
@@ -386,7 +386,7 @@ mod tests {
         let [spid, begins, nodes, _, addresses, counters] = asked(&Insert::new(spids, Layout::Linear, 32));
         assert_eq!((spid, begins), ([1024 * 8, 0], [4 * (1024 + distinct), 4 * distinct]));
         assert_eq!((nodes[1], addresses, counters), (8 * distinct, [0, 4 * 1024], [0, 0]));
-        // Of a list of two the older one costs a node more: between one and two for each sample but the first.
+        // The older one of a list of two costs a node more: between one and two for each sample but the first.
         assert!((8 * (1024 - 128)..8 * 2 * 1024).contains(&nodes[0]), "{nodes:?}");
         // More blur, longer lists.
         let machine = Machine::known("volta-v100").unwrap();

@@ -177,11 +177,11 @@ pub struct Shade {
 
 /// A point that a thread shades.
 struct Point {
-    /// Of its surface, in the shader's order.
+    /// Its surface, in the shader's order.
     reads: [Access; 2],
     /// It has a surface, which meets the lights.
     is_lit: bool,
-    /// Of its irradiance; None: it lies beyond the end.
+    /// Its irradiance; None: it lies beyond the end.
     write: Option<Access>,
 }
 

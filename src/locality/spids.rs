@@ -10,7 +10,7 @@ use crate::units::Extent;
 /// The default of `--guard-band`, px: no blur of the plane is wider, so that every shading point lies in shading space.
 pub const GUARD_PX: u32 = 64;
 
-/// Of the scrambles of tuples, that of `--seed`'s default.
+/// The default of `--seed`, which scrambles tuples.
 const SEED: u32 = 1;
 
 /// SPIDs, an image with a layer a tuple.

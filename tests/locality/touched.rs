@@ -23,8 +23,7 @@ const EXTENT: Extent = Extent { width: 61, height: 45 };
 
 /// Report of a frame of interleaved_deferred.
 fn touched(program: &Program, settings: &[&str]) -> Value {
-    let all = ["--size", SIZE, "--pattern", "4x2", "--block", "12x4", "--workgroup", "16x4", "--touched", "line"];
-    rendered(program, &[&[SCENE][..], &all, settings].concat())
+    rendered(program, &[&[SCENE, "--size", SIZE, "--touched", "line"][..], settings].concat())
 }
 
 /// Fails where a pass asks for other bytes of a resource than a stream does.
@@ -36,20 +35,21 @@ fn require_asked(report: &Value, pass: &str, name: &str, resource: &Resource, ac
 #[test]
 fn shading_asks_for_what_its_stream_does() {
     let program = Program::new();
-    for (split, storage, texels, vpls) in [
-        (Split::OnePass, StorageKind::Buffer, 4, 18),
-        (Split::TwoPass, StorageKind::Image, 1, 18),
-        (Split::Remap, StorageKind::Buffer, 2, 17),
-        (Split::Branch, StorageKind::Buffer, 1, 18),
-        (Split::None, StorageKind::Buffer, 8, 5),
+    let (buffer, image) = (StorageKind::Buffer, StorageKind::Image);
+    for (split, storage, texels, vpls, more) in [
+        (Split::OnePass, buffer, 4, 18, &["--pattern", "4x2", "--storage", "buffer"][..]),
+        (Split::TwoPass, image, 1, 18, &["--pattern", "4x2", "--block", "12x4", "--storage", "image"]),
+        (Split::Remap, buffer, 2, 17, &["--pattern", "4x2"]),
+        (Split::Branch, buffer, 1, 18, &["--pattern", "4x2"]),
+        (Split::None, buffer, 8, 5, &[]),
     ] {
-        let (pattern, block, workgroup) = ([4, 2], [12, 4], [16, 4]);
-        let case = ShadeCase { extent: EXTENT, split, pattern, block, storage, workgroup, texels, vpls }.checked();
-        let case = case.unwrap();
+        let (pattern, block, workgroup) = ([4, 2], [12, 4], [4, 2]);
+        let case = ShadeCase { extent: EXTENT, split, pattern, block, storage, workgroup, texels, vpls };
+        let case = case.checked().unwrap();
+        assert_eq!(case.texels, texels);
         let counts = [texels.to_string(), vpls.to_string()];
-        let settings =
-            ["--split", split.name(), "--storage", storage.name(), "--texels", &counts[0], "--vpls", &counts[1]];
-        let report = touched(&program, &settings);
+        let settings = ["--split", split.name(), "--workgroup", "4x2", "--texels", &counts[0], "--vpls", &counts[1]];
+        let report = touched(&program, &[&settings[..], more].concat());
         let shade = case.kernel(Layout::Linear);
         let (all, memory) = (accesses_of(&shade), &shade.memory);
         let is_moved = matches!(split, Split::OnePass | Split::TwoPass);
@@ -79,7 +79,8 @@ fn filters_ask_for_what_their_streams_do() {
         let counts = [taps.to_string(), texels.to_string()];
         // Nothing is a discontinuity.
         let even = ["--normal-threshold", "2", "--position-threshold", "1000"];
-        let settings = ["--filter", filter.name(), "--kernel", &counts[0], "--texels", &counts[1]];
+        let settings =
+            ["--filter", filter.name(), "--workgroup", "16x4", "--kernel", &counts[0], "--texels", &counts[1]];
         let report = touched(&program, &[&settings[..], &even].concat());
         let kernels = case.kernels(Layout::Linear);
         let of = |kernels: &[_]| kernels.iter().flat_map(|kernel| accesses_of(kernel)).collect::<Vec<Access>>();

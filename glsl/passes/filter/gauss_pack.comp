@@ -29,8 +29,9 @@ void main() {
     }
     uint texel = pixel.y * params.row_pitch + pixel.x;
     uvec2 words = source[texel];
-    float stops = (flags[texel] & params.stop_bits_x) != 0u ? 1.0 : 0.0;
-    stops += (flags[texel] & params.stop_bits_y) != 0u ? 4.0 : 0.0;
+    uint bits = flags[texel];
+    float stops = (bits & params.stop_bits_x) != 0u ? 1.0 : 0.0;
+    stops += (bits & params.stop_bits_y) != 0u ? 4.0 : 0.0;
     uint last = packHalf2x16(vec2(stops, 0.0));
     imageStore(target, ivec2(pixel), uvec4(words.x, (words.y & 0xffffu) | (last << 16), 0u, 0u));
 }
