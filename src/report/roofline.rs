@@ -155,12 +155,7 @@ impl Roofline {
 
     /// The least time of a pass that took `ms` milliseconds, more than 0; None where nothing is known of its work. `bytes`: those that it reads
     /// and writes; what is not known of them takes no time. `statistics`: what the device counted in it.
-    pub fn least(
-        &self,
-        bytes: [Option<u64>; 2],
-        statistics: Option<&BTreeMap<String, u64>>,
-        ms: f64,
-    ) -> Option<Least> {
+    pub fn least(&self, bytes: [Option<u64>; 2], statistics: Option<&BTreeMap<String, u64>>, ms: f64) -> Option<Least> {
         let counted = |name: &str, per_s: Option<f64>| Some(1e3 * *statistics?.get(name)? as f64 / per_s?);
         let triangles = counted("input_assembly_primitives", self.triangles_per_s);
         let fragments = counted("fragment_shader_invocations", self.pixels_per_s);

@@ -17,9 +17,10 @@ const KILLS: usize = 3;
 /// No machine takes as long to measure a few small rows.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// A sweep over seeds, whose rows share their shaders and have a picture each, in groups of one.
+/// A sweep over seeds of the samples alone, whose rows share their shaders and have a picture each, in groups of one.
 fn words(seeds: &str) -> Vec<&str> {
-    let small = ["bench", "frame", "cornell", "--size", "16x16", "--vpls", "16", "--repeat", "1", "--group", "1"];
+    let small =
+        ["bench", "frame", "cornell:seed=1", "--size", "16x16", "--vpls", "16", "--repeat", "1", "--group", "1"];
     [&small[..], &["--sweep", seeds, "--json", "--quiet", "-o"]].concat()
 }
 
