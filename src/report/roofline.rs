@@ -163,7 +163,7 @@ impl Roofline {
         let memory = bytes.iter().any(Option::is_some).then(|| self.memory_ms(read_bytes, written_bytes));
         let times = [(Bound::Memory, memory), (Bound::Triangles, triangles), (Bound::Fragments, fragments)];
         let known = times.into_iter().filter_map(|(bound, ms)| Some((bound, ms?)));
-        // Of equal ones the first.
+        // The first of equal ones.
         let (bound, least_ms) = known.reduce(|one, other| if other.1 > one.1 { other } else { one })?;
         let share = least_ms / ms;
         Some(Least { least_ms, share, bound, is_impossible: share > IMPOSSIBLE_FROM })

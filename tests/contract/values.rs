@@ -444,7 +444,7 @@ fn a_benchmarks_row_is_its_frame() {
     assert_eq!(row["counters"], report["counters"]);
     let passes: Vec<&Value> = list(&report["passes"]).iter().filter(|pass| pass["where"].is_null()).collect();
     assert_eq!(count(&row["bytes_written"]), passes.iter().map(|pass| count(&pass["bytes_written"])).sum::<u64>());
-    // Of the G-buffer's textures nobody knows without counting.
+    // Nobody knows of the textures that a G-buffer reads without counting.
     assert!(passes.iter().any(|pass| pass["bytes_read"].is_null()) && row["bytes_read"].is_null());
     let named: Vec<&str> = row["pass_ms"].as_object().unwrap().keys().map(String::as_str).collect();
     assert_eq!(named, passes.iter().map(|pass| text(&pass["name"])).collect::<Vec<_>>());
