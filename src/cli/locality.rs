@@ -10,7 +10,7 @@ use crate::bench::table::Table;
 use crate::choice::Choice;
 use crate::error::{Error, Result};
 use crate::interrupt;
-use crate::locality::case::{Case, GatherStage, SplitStage};
+use crate::locality::case::{Case, CopyStage};
 use crate::locality::count::Counts;
 use crate::locality::drawn::{self, Summary};
 use crate::locality::filter::FilterCase;
@@ -241,8 +241,9 @@ fn study(stage: StageKind, point: &Point) -> Result<Box<dyn Studied>> {
         .checked()
     };
     Ok(match stage {
-        StageKind::Split => Box::new(SplitStage(case()?)),
-        StageKind::Gather => Box::new(GatherStage(case()?)),
+        StageKind::Split | StageKind::Gather => {
+            Box::new(CopyStage { case: case()?, is_back: stage == StageKind::Gather })
+        }
         StageKind::Shade => Box::new(
             ShadeCase {
                 extent,

@@ -97,53 +97,32 @@ impl Case {
     }
 }
 
-/// The split of a case.
-pub struct SplitStage(pub Case);
-
-/// The gather of a case.
-pub struct GatherStage(pub Case);
-
-impl Studied for SplitStage {
-    fn stage(&self) -> StageKind {
-        StageKind::Split
-    }
-
-    fn settings(&self) -> Vec<(&'static str, String)> {
-        self.0.settings()
-    }
-
-    fn extent(&self) -> Extent {
-        self.0.extent
-    }
-
-    fn workgroup(&self) -> [u32; 2] {
-        self.0.workgroup
-    }
-
-    fn counted(&self, machine: &Machine) -> Vec<PassCounts> {
-        self.0.counted_passes(self.0.passes().0, machine)
-    }
+/// One way of a case: there, or back.
+pub struct CopyStage {
+    pub case: Case,
+    pub is_back: bool,
 }
 
-impl Studied for GatherStage {
+impl Studied for CopyStage {
     fn stage(&self) -> StageKind {
-        StageKind::Gather
+        if self.is_back { StageKind::Gather } else { StageKind::Split }
     }
 
     fn settings(&self) -> Vec<(&'static str, String)> {
-        self.0.settings()
+        self.case.settings()
     }
 
     fn extent(&self) -> Extent {
-        self.0.extent
+        self.case.extent
     }
 
     fn workgroup(&self) -> [u32; 2] {
-        self.0.workgroup
+        self.case.workgroup
     }
 
     fn counted(&self, machine: &Machine) -> Vec<PassCounts> {
-        self.0.counted_passes(self.0.passes().1, machine)
+        let (split, gather) = self.case.passes();
+        self.case.counted_passes(if self.is_back { gather } else { split }, machine)
     }
 }
 

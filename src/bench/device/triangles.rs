@@ -9,12 +9,13 @@ use super::work::GROUP;
 use crate::bench::rounds::{Probe, last_pass};
 use crate::error::Result;
 use crate::gpu::commands::{Submits, Traffic};
-use crate::gpu::pipeline::{Blending, DepthBias, GraphicsDescription, GraphicsPipeline};
+use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
 use crate::gpu::recorded::Recorded;
 use crate::gpu::shader::bench::device::triangles::{FRAG, TRIANGLES_COLUMN_BITS, VERT};
 use crate::gpu::shader::structs::TrianglesParams;
 use crate::gpu::{Access, Berth, Buffer, ColorTarget, Commands, Gpu, Image, ImageDescription, readback, upload};
 use crate::memory::kinds::Use;
+use crate::passes::fullscreen;
 use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
@@ -143,7 +144,9 @@ impl Drawing {
     pub fn new(gpu: &Arc<Gpu>, drawn: Drawn, grid: Grid) -> Result<Self> {
         let is_possible = grid.side_px.is_power_of_two() && grid.squares.is_power_of_two() && grid.squares <= 512;
         assert!(is_possible && (1..=255).contains(&grid.draws), "{grid:?}");
-        let pipeline = pipeline(gpu)?;
+        let formats = [FORMAT];
+        let description = GraphicsDescription { vertex: &VERT, ..fullscreen::description(&FRAG, &formats) };
+        let pipeline = GraphicsPipeline::new(gpu, &description)?;
         let corners = grid.indices();
         let flags = vk::BufferUsageFlags::INDEX_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let bytes = 4 * corners.len() as u64;
@@ -188,28 +191,6 @@ impl Probe for Drawing {
     fn measure(&self) -> Result<Vec<f64>> {
         last_pass(&self.recorded)
     }
-}
-
-fn pipeline(gpu: &Arc<Gpu>) -> Result<GraphicsPipeline> {
-    let description = GraphicsDescription {
-        vertex: &VERT,
-        geometry: None,
-        fragment: Some(&FRAG),
-        constants: &[],
-        vertex_buffers: &[],
-        color_formats: &[FORMAT],
-        samples: 1,
-        blending: Blending::Replace,
-        depth_format: None,
-        depth_write: false,
-        depth_compare: vk::CompareOp::ALWAYS,
-        depth_clamp: false,
-        depth_bias: DepthBias::NONE,
-        conservative_margin_px: None,
-        stencil: None,
-        foreign_sets: &[],
-    };
-    GraphicsPipeline::new(gpu, &description)
 }
 
 #[cfg(test)]
