@@ -126,8 +126,8 @@ fn passes_are_a_share_of_what_the_device_can_do() {
     for pass in passes {
         let timed = report["passes"].as_array().unwrap().iter().find(|one| one["name"] == pass["pass"]).unwrap();
         let least = pass["least_ms"].as_f64().unwrap();
-        // At least what it reads at the rate of reading; nobody has counted its triangles.
-        assert!(least >= 0.999 * timed["bytes_read"].as_f64().unwrap() / read / 1e6, "{pass}");
+        // At least what it is known to read at the rate of reading; nobody has counted its triangles.
+        assert!(least >= 0.999 * timed["bytes_read"].as_f64().unwrap_or_default() / read / 1e6, "{pass}");
         assert_eq!(pass["bound"], "memory", "{pass}");
         let share = least / timed["ms"]["median"].as_f64().unwrap();
         assert!((pass["share"].as_f64().unwrap() - share).abs() < 1e-6 * share.max(1.0), "{pass}");
