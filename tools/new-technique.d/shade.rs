@@ -42,8 +42,8 @@ impl Shade {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: pixels * gbuffer.resource.shading_bytes(),
-            written_bytes: pixels * 16,
+            read_bytes: Some(pixels * gbuffer.resource.shading_bytes()),
+            written_bytes: Some(pixels * 16),
             invocations: Some(pixels),
         };
         cmd.pass("new_technique.shade", traffic, |cmd| {
