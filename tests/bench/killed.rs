@@ -4,6 +4,7 @@
 use crate::support::benched::read;
 use crate::support::program::{Program, quincunx};
 use quincunx::bench::row::BenchRow;
+use quincunx::sampling::pcg::Pcg32;
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -50,20 +51,6 @@ fn lasting(rows: &[BenchRow]) -> Vec<impl PartialEq + std::fmt::Debug + use<>> {
     rows.iter().map(one).collect()
 }
 
-/// Numbers that nobody chose, of which failures say where they began.
-struct Chance(u64);
-
-impl Chance {
-    /// From 0 to below 1.
-    fn next(&mut self) -> f64 {
-        // xorshift64, Marsaglia 2003.
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 /// Starts the sweep and kills it once `enough` rows are on disk, `late` of the time of a row after that. Returns how many rows it has
 /// shown.
 fn run_and_kill(program: &Program, words: &[&str], enough: usize, late: f64) -> usize {
@@ -108,16 +95,17 @@ fn a_sweep_that_is_killed_three_times_ends_with_the_rows_of_one_that_was_not() {
     let expected = lasting(&rows(&read(&program, "whole/rows.jsonl")));
     assert_eq!(expected.len(), COUNT);
 
-    let start = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64 | 1;
-    let mut chance = Chance(start);
+    // Nobody chose it; failures say it.
+    let start = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
+    let mut chance = Pcg32::new(start, 0);
     let mut before = String::new();
     for turn in 0..KILLS {
         let had = whole(&before).lines().count();
         // In each quarter but the last, so that no run ends by itself.
         let quarter = COUNT as f64 / (KILLS + 1) as f64;
-        let enough = (((turn as f64 + chance.next()) * quarter) as usize).max(had + 1);
+        let enough = (((turn as f64 + f64::from(chance.unit())) * quarter) as usize).max(had + 1);
         let resumed = [&words[..], &["out", "--resume"]].concat();
-        let shown = run_and_kill(&program, &resumed, enough, 2.0 * chance.next());
+        let shown = run_and_kill(&program, &resumed, enough, 2.0 * f64::from(chance.unit()));
         let after = on_disk(&program);
         let found = rows(&after);
         println!("killed with {} rows on disk, {had} of before, {shown} shown since", found.len());
