@@ -42,7 +42,7 @@ impl Shade {
         let extent = color.description.extent;
         let pixels = extent.pixel_count();
         let traffic = Traffic {
-            read_bytes: Some(pixels * gbuffer.resource.shading_bytes()),
+            read_bytes: direct.read_bytes(pixels).map(|bytes| pixels * gbuffer.resource.shading_bytes() + bytes),
             written_bytes: Some(pixels * 16),
             invocations: Some(pixels),
         };

@@ -36,8 +36,8 @@ impl Memoise {
     ) -> Result<()> {
         let samples = seen.resource;
         let traffic = Traffic {
-            read_bytes: Some(samples.spids.description.bytes()),
-            // Entries are counted after the frame.
+            // Entries that are looked for and made are counted after the frame.
+            read_bytes: None,
             written_bytes: None,
             invocations: Some(samples.count()),
         };

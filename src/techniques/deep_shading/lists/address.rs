@@ -33,7 +33,8 @@ impl Address {
         let spids = &samples.spids;
         let addresses = lists.addresses.as_ref().expect("only with --address-buffer on");
         let traffic = Traffic {
-            read_bytes: Some(spids.description.bytes()),
+            // Lists are walked as far as they hold it.
+            read_bytes: None,
             written_bytes: Some(addresses.bytes),
             invocations: Some(samples.count()),
         };

@@ -72,7 +72,9 @@ impl SampleRasterizer {
                 [u64::from(rounds) * mesh::read_bytes(inputs.scene, inputs.list.calls()), 0]
             }
         };
-        Traffic { read_bytes: Some(read), written_bytes: Some(samples.bytes() + written), invocations: None }
+        // Holes are looked up in textures.
+        let read_bytes = inputs.list.mask.is_empty().then_some(read);
+        Traffic { read_bytes, written_bytes: Some(samples.bytes() + written), invocations: None }
     }
 }
 
