@@ -187,16 +187,15 @@ impl Tuned {
         text += &format!("chosen: {}\n", label(&self.chosen));
         if let Some(asked) = self.asked() {
             let ratio = asked.speed_up.as_ref().map(|speed_up| table::ratio(&speed_up.ratio)).unwrap_or_default();
-            text += &match self.verdict(asked) {
-                Verdict::Chosen | Verdict::Same => "these are the settings as asked: keep them\n".to_owned(),
-                verdict => format!(
-                    "its time is {ratio} of that of the settings as asked\n{}",
-                    match verdict {
-                        Verdict::Faster => "the settings as asked are faster than all that were searched: keep them\n",
-                        _ => "",
-                    }
-                ),
-            };
+            let verdict = self.verdict(asked);
+            if matches!(verdict, Verdict::Chosen | Verdict::Same) {
+                text += "these are the settings as asked: keep them\n";
+            } else {
+                text += &format!("its time is {ratio} of that of the settings as asked\n");
+            }
+            if verdict == Verdict::Faster {
+                text += "the settings as asked are faster than all that were searched: keep them\n";
+            }
         }
         text
     }
