@@ -361,6 +361,7 @@ impl Job {
             validate: self.validate,
             touched: self.values.choice("touched"),
             strategy: self.values.choice("allocation"),
+            image_tiling: self.values.choice("image-tiling"),
             budget_bytes: self.values.bytes("memory-budget"),
             block_bytes: self.values.unless_auto("memory-block", Values::power_of_bytes),
             recorder: self.recorder.clone(),

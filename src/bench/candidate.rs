@@ -178,7 +178,16 @@ fn one_session(job: &Job, values: &Values, scene_hash: &str) -> Result<()> {
         let why = format!("--touched {}: frames that count are slow, and their times say nothing", touched.name());
         return Err(Error::request(why).note("`render` and `memory` count"));
     }
-    for key in ["allocation", "memory-block", "memory-budget", "texture-limit", "texture-gutters", "anisotropy"] {
+    const FIXED: [&str; 7] = [
+        "allocation",
+        "memory-block",
+        "image-tiling",
+        "memory-budget",
+        "texture-limit",
+        "texture-gutters",
+        "anisotropy",
+    ];
+    for key in FIXED {
         let text = values.text(key);
         if text != job.values.text(key) {
             return Err(Error::request(format!(

@@ -7,8 +7,8 @@ use super::request::DeviceRequest;
 use super::{probe, validation};
 use crate::caps::{Caps, HeapBudget, Identity};
 use crate::error::{Error, Result};
-use crate::memory::Memory;
 use crate::memory::pool::Rules;
+use crate::memory::{Memory, Tiling};
 use ash::vk;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Arc, Mutex};
@@ -26,6 +26,8 @@ pub struct Gpu {
     pub queue_family: u32,
     /// `DeviceRequest::robust`.
     pub is_robust: bool,
+    /// `DeviceRequest::image_tiling`.
+    pub image_tiling: Tiling,
     pub memory: Arc<Memory>,
     /// What frames touch; None without `DeviceRequest::touched`.
     pub marks: Option<Arc<Marks>>,
@@ -343,6 +345,7 @@ impl Gpu {
             queue,
             queue_family,
             is_robust: request.robust,
+            image_tiling: request.image_tiling,
             memory,
             marks: marks.map(Arc::new),
             pipelines: PipelineStore::default(),
@@ -406,6 +409,18 @@ impl Gpu {
 
     /// The greatest image of this description that the device makes, in bytes; 0 where it makes none.
     pub(super) fn greatest_image_bytes(&self, info: &vk::ImageCreateInfo<'_>) -> u64 {
+        self.image_properties(info).map_or(0, |properties| properties.max_resource_size)
+    }
+
+    /// Whether the driver does with linear images of a format all that it does with optimal ones.
+    pub(super) fn is_as_able_linear(&self, format: vk::Format) -> bool {
+        // SAFETY: as in `image_properties`.
+        let able = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
+        able.linear_tiling_features.contains(able.optimal_tiling_features)
+    }
+
+    /// What the driver makes of such an image at most; None: it makes none.
+    pub(super) fn image_properties(&self, info: &vk::ImageCreateInfo<'_>) -> Option<vk::ImageFormatProperties> {
         // SAFETY: a live instance and the physical device that this device was made from.
         let properties = unsafe {
             self.instance.get_physical_device_image_format_properties(
@@ -417,7 +432,7 @@ impl Gpu {
                 info.flags,
             )
         };
-        properties.map_or(0, |properties| properties.max_resource_size)
+        properties.ok()
     }
 
     /// What the validation layer has said since the last call; empty without `validate`.

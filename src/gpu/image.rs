@@ -77,7 +77,28 @@ impl ImageDescription {
         layer_bytes * u64::from(self.layers()) * u64::from(self.slices()) * u64::from(self.samples)
     }
 
-    fn create_info(&self) -> vk::ImageCreateInfo<'static> {
+    /// How its texels lie in memory: as `gpu` was asked for, if the driver makes such an image, and does with it all that it does with others
+    /// of its formats.
+    pub fn tiling(&self, gpu: &Gpu) -> Tiling {
+        let Self { extent, format, level_count, samples, .. } = *self;
+        let makes = |most: vk::ImageFormatProperties| {
+            let sides = [(extent.width, most.max_extent.width), (extent.height, most.max_extent.height)];
+            sides.iter().chain(&[(self.slices(), most.max_extent.depth)]).all(|(side, most)| side <= most)
+                && level_count <= most.max_mip_levels
+                && self.layers() <= most.max_array_layers
+                && most.sample_counts.contains(vk::SampleCountFlags::from_raw(samples))
+                && self.bytes() <= most.max_resource_size
+        };
+        let is_linear = gpu.image_tiling == Tiling::Linear
+            && [Some(format), Some(storage_format(format)), self.sampled_as]
+                .into_iter()
+                .flatten()
+                .all(|format| gpu.is_as_able_linear(format))
+            && gpu.image_properties(&self.create_info(Tiling::Linear)).is_some_and(makes);
+        if is_linear { Tiling::Linear } else { Tiling::Optimal }
+    }
+
+    fn create_info(&self, tiling: Tiling) -> vk::ImageCreateInfo<'static> {
         let Self { extent, format, level_count, samples, usage, .. } = *self;
         let is_stored_otherwise = usage.contains(vk::ImageUsageFlags::STORAGE) && storage_format(format) != format;
         let reinterpreted = is_stored_otherwise || self.sampled_as.is_some();
@@ -92,7 +113,10 @@ impl ImageDescription {
             .mip_levels(level_count)
             .array_layers(self.layers())
             .samples(vk::SampleCountFlags::from_raw(samples))
-            .tiling(vk::ImageTiling::OPTIMAL)
+            .tiling(match tiling {
+                Tiling::Optimal => vk::ImageTiling::OPTIMAL,
+                Tiling::Linear => vk::ImageTiling::LINEAR,
+            })
             .usage(usage)
     }
 
@@ -123,12 +147,12 @@ impl ImageDescription {
 
     /// The most bytes that the driver lets such an image have, whatever its extent.
     pub fn greatest_bytes(&self, gpu: &Gpu) -> u64 {
-        gpu.greatest_image_bytes(&self.create_info())
+        gpu.greatest_image_bytes(&self.create_info(self.tiling(gpu)))
     }
 
     /// What the driver requires of memory for such an image, without making one.
     pub fn requirements(&self, gpu: &Gpu) -> vk::MemoryRequirements {
-        let info = self.create_info();
+        let info = self.create_info(self.tiling(gpu));
         let query = vk::DeviceImageMemoryRequirements::default().create_info(&info);
         let mut found = vk::MemoryRequirements2::default();
         // SAFETY: a live device with maintenance4; the info outlives the call.
@@ -203,7 +227,7 @@ impl Image {
     ) -> Result<Self> {
         let ImageDescription { extent, format, .. } = description;
         description.require_within(name, &gpu.caps.limits)?;
-        let info = description.create_info();
+        let info = description.create_info(description.tiling(gpu));
         let (bytes, most) = (description.bytes(), description.greatest_bytes(gpu));
         if bytes > most {
             return Err(Error::memory(format!(
@@ -258,7 +282,8 @@ impl Image {
         // SAFETY: the image was made from this device.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
         let bytes = description.bytes();
-        let request = Request { name, group, bytes, requirements, usage: Use::Device, tiling: Tiling::Optimal };
+        let tiling = description.tiling(gpu);
+        let request = Request { name, group, bytes, requirements, usage: Use::Device, tiling };
         let allocation = berth.allocate(&gpu.memory, &request)?;
         // SAFETY: fresh memory of an allowed type, in bounds, bound once.
         unsafe { gpu.device.bind_image_memory(handle, allocation.handle, allocation.offset) }

@@ -1,9 +1,9 @@
 //! What a device is asked to be when it opens.
 
 use crate::caps::Caps;
-use crate::memory::Strategy;
 use crate::memory::touched::Touched;
 use crate::memory::trace::Recorder;
+use crate::memory::{Strategy, Tiling};
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ pub struct DeviceRequest {
     /// Reads and writes of shaders beyond a buffer's end hit nothing else (robustBufferAccess). Without, such a mistake may
     /// lose the device; what looks for mistakes and what is timed does without.
     pub robust: bool,
+    /// How texels of images lie in memory, of those that the driver makes so.
+    pub image_tiling: Tiling,
     /// Whether it is counted what frames touch: shaders do it themselves, which costs much time.
     pub touched: Touched,
     /// None: the driver's own functions.

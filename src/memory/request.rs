@@ -38,12 +38,18 @@ impl Strategy {
     }
 }
 
-/// Buffers and linear images on one side, optimally tiled images on the other: the two sides share a memory block only
-/// in an arena, where the caller that places the parts keeps them bufferImageGranularity apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tiling {
-    Linear,
-    Optimal,
+choices! {
+    /// How texels of an image lie in memory (`--image-tiling`). Buffers and linear images are on one side, optimally tiled images on
+    /// the other: the two sides share a memory block only in an arena, where the caller that places the parts keeps them
+    /// bufferImageGranularity apart.
+    #[derive(Default)]
+    pub enum Tiling {
+        /// As the driver likes best.
+        #[default]
+        "optimal" => Optimal,
+        /// Row by row.
+        "linear" => Linear,
+    }
 }
 
 /// A resource's request for memory.

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::gpu::image::texel_bytes;
 use crate::gpu::structure::Over;
 use crate::gpu::{Buffer, Gpu, ImageDescription};
+use crate::memory::Tiling;
 use ash::vk;
 
 /// A driver's answer for one resource.
@@ -18,6 +19,8 @@ pub struct Requirement {
     pub alignment_bytes: u64,
     /// A bit for each memory type that it may lie in.
     pub memory_type_bits: u32,
+    /// That of a buffer is linear.
+    pub tiling: Tiling,
 }
 
 /// Source of the answers.
@@ -31,8 +34,12 @@ impl Requirements<'_> {
     /// Memory that `shape` takes.
     pub fn of(&self, shape: &Shape) -> Requirement {
         match (self, shape) {
-            (Self::Device(gpu), Shape::Buffer { bytes, flags, .. }) => Buffer::requirements(gpu, *bytes, *flags).into(),
-            (Self::Device(gpu), Shape::Image(description)) => description.requirements(gpu).into(),
+            (Self::Device(gpu), Shape::Buffer { bytes, flags, .. }) => {
+                Requirement::of(Buffer::requirements(gpu, *bytes, *flags), Tiling::Linear)
+            }
+            (Self::Device(gpu), Shape::Image(description)) => {
+                Requirement::of(description.requirements(gpu), description.tiling(gpu))
+            }
             (Self::Rules(rules), Shape::Buffer { bytes, flags, .. }) => Requirement {
                 bound_bytes: bytes.next_multiple_of(rules.buffer_size_multiple_bytes),
                 alignment_bytes: match flags.contains(vk::BufferUsageFlags::STORAGE_BUFFER) {
@@ -40,11 +47,13 @@ impl Requirements<'_> {
                     false => rules.vertex_buffer_alignment_bytes,
                 },
                 memory_type_bits: rules.memory_type_bits,
+                tiling: Tiling::Linear,
             },
             (Self::Rules(rules), Shape::Image(description)) => Requirement {
                 bound_bytes: image_bytes(rules, description),
                 alignment_bytes: rules.image_alignment_bytes,
                 memory_type_bits: rules.memory_type_bits,
+                tiling: Tiling::Optimal,
             },
         }
     }
@@ -89,12 +98,13 @@ fn image_bytes(rules: &LayoutRules, description: &ImageDescription) -> u64 {
         .next_multiple_of(rules.image_size_multiple_bytes)
 }
 
-impl From<vk::MemoryRequirements> for Requirement {
-    fn from(answer: vk::MemoryRequirements) -> Self {
+impl Requirement {
+    fn of(answer: vk::MemoryRequirements, tiling: Tiling) -> Self {
         Self {
             bound_bytes: answer.size,
             alignment_bytes: answer.alignment.max(1),
             memory_type_bits: answer.memory_type_bits,
+            tiling,
         }
     }
 }

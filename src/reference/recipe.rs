@@ -163,7 +163,8 @@ mod tests {
         let settings = settings_of(techniques::find("path_traced").unwrap());
         let own: Vec<&str> = settings.iter().filter(|row| !goes_along(row)).map(|row| row.key).collect();
         let of_file = ["exposure", "tonemap", "exr"];
-        let of_memory = ["allocation", "memory-block", "alias", "tree-growth", "memory-budget", "touched"];
+        let of_memory =
+            ["allocation", "memory-block", "image-tiling", "alias", "tree-growth", "memory-budget", "touched"];
         let of_samples = ["spp", "until-error"];
         let of_cost = ["workgroup", "node-width", "node-layout", "stack", "stack-entries"];
         assert_eq!(own, [&of_file[..], &of_memory, &of_samples, &of_cost].concat());

@@ -4,6 +4,7 @@
 //! when it is set, so that what `Values` holds is possible.
 
 mod forward;
+mod memory;
 mod optics;
 mod parse;
 pub mod readers;

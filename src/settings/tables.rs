@@ -1,10 +1,9 @@
 //! The rows that several techniques read: those of every picture, those of shading with a G-buffer, and single ones.
 
+use super::memory::{ALIAS, ALLOCATION, IMAGE_TILING, MEMORY_BLOCK, MEMORY_BUDGET, TOUCHED};
 use super::tree::TREE_GROWTH;
 use super::{Changes, Kind, Setting, Unread, Values};
 use crate::choice::choices;
-use crate::memory::touched::Touched;
-use crate::memory::{Strategy, alias};
 use crate::picture::image_file::ExrPrecision;
 use crate::picture::tonemap::{EXPOSURES_EV, ToneMap};
 
@@ -119,32 +118,10 @@ pub const COMMON: &[Setting] = &[
         help: "Irradiance at which a punctual light without a range of its own is cut off; 0: never",
         ..Setting::changing(Changes::Picture)
     },
-    Setting {
-        key: "allocation",
-        kind: Kind::Choice(Strategy::WORDS),
-        default: "linear",
-        help: "How memory is allocated for resources: as ranges one after the other in shared memory blocks (linear), \
-               as one memory block for each (dedicated), as ranges in shared memory blocks wherever there is room (tlsf), \
-               or as halves of halves of them, each a power of two of bytes (buddy)",
-        ..Setting::changing(Changes::Nothing)
-    },
-    Setting {
-        key: "memory-block",
-        kind: Kind::PowerOfBytes { min: 64 << 10, max: 1 << 30 },
-        auto: true,
-        default: "auto",
-        help: "Greatest size of a memory block that resources share; the first ones are smaller, and what takes a quarter \
-               of it or more has a memory block of its own; auto: 16MiB",
-        ..Setting::changing(Changes::Nothing)
-    },
-    Setting {
-        key: "alias",
-        kind: Kind::Choice(alias::Mode::WORDS),
-        default: "greedy",
-        help: "How resources of a frame that never live in the same pass share bytes: placed by the best of a few \
-               orders (greedy), by a search for the least sum (optimal), or not at all (off)",
-        ..Setting::changing(Changes::Nothing)
-    },
+    ALLOCATION,
+    MEMORY_BLOCK,
+    IMAGE_TILING,
+    ALIAS,
     Setting {
         key: "submit-ms",
         kind: Kind::Number { min: 0.0, max: 1e6 },
@@ -158,22 +135,8 @@ pub const COMMON: &[Setting] = &[
         ..Setting::changing(Changes::Nothing)
     },
     TREE_GROWTH,
-    Setting {
-        key: "memory-budget",
-        kind: Kind::Bytes,
-        default: "none",
-        help: "Most bytes that the memory blocks of one heap may sum up to; an allocation beyond it is refused; none: \
-               the heap's size",
-        ..Setting::changing(Changes::Nothing)
-    },
-    Setting {
-        key: "touched",
-        kind: Kind::Choice(Touched::WORDS),
-        default: "off",
-        help: "Count which bytes each pass reads and writes of each resource: in cache lines of 64 bytes (line), in pages of \
-               4096 bytes (page), or not at all (off); shaders count themselves, which takes much time; the same picture",
-        ..Setting::changing(Changes::Nothing)
-    },
+    MEMORY_BUDGET,
+    TOUCHED,
     Setting {
         key: "texture-limit",
         kind: Kind::Integer { min: 0, max: 16384 },

@@ -1,6 +1,7 @@
 //! A `--memory-budget` under which a technique runs while it does not with a mebibyte less, and what it gives up there.
 
 use super::driver::Driver;
+use super::require_known_tiling;
 use super::trials::{Fitting, MIB, Trials};
 use crate::bvh::LazyBvh;
 use crate::caps::Caps;
@@ -36,6 +37,7 @@ pub struct Least {
 /// would do (4).
 pub fn least(job: &Job, caps: &Caps) -> Result<Least> {
     job.require_read()?;
+    require_known_tiling(job)?;
     let rules = caps.rules();
     let driver = Driver { caps, requirements: Requirements::Rules(&rules) };
     let bvh = LazyBvh::default();

@@ -14,6 +14,7 @@ use crate::caps::{Caps, HeapBudget};
 use crate::error::{Error, Result};
 use crate::gpu::commands::Submits;
 use crate::job::{Job, fail_on_validation};
+use crate::memory::Tiling;
 use crate::memory::kinds::Kinds;
 use crate::memory::touched::Touched;
 use crate::plan::Requirements;
@@ -48,6 +49,7 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
         let why = format!("--touched {}: a plan touches nothing", touched.name());
         return Err(Error::request(why).note("without --plan it is counted on a device"));
     }
+    require_known_tiling(job)?;
     let scene = job.with_texturing(job.load_scene()?, caps);
     let name = scene.name.clone();
     let (bvh, rules) = (LazyBvh::default(), caps.rules());
@@ -69,6 +71,19 @@ pub fn planned(job: &Job, caps_name: &str, caps: &Caps) -> Result<Study> {
         is_unrounded,
         budget,
     })
+}
+
+/// Errors: images lie as no rules know (exit code 2).
+fn require_known_tiling(job: &Job) -> Result<()> {
+    let tiling: Tiling = job.values.choice("image-tiling");
+    if tiling == Tiling::Optimal {
+        return Ok(());
+    }
+    let why = format!(
+        "--image-tiling {}: only a device says which images it makes so, and how large they are",
+        tiling.name()
+    );
+    Err(Error::request(why).note("without --plan it is asked"))
 }
 
 /// Resolved values under `caps` of the settings of `job` whose text does not say all, such as `auto`: the host's part

@@ -34,14 +34,14 @@ pub fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64,
     let mut rehearsal = Rehearsal::new(rules, &kinds);
     let Plans { scene, frame, sharing, .. } = plans;
     let own = |planned: &Planned, shape: &Shape, name: &str, rehearse: &mut dyn FnMut(&Request<'_>) -> Result<()>| {
-        let tiling = if let Shape::Image(_) = shape { Tiling::Optimal } else { Tiling::Linear };
+        let required = requirements.of(shape);
         rehearse(&Request {
             name,
             group: planned.group,
             bytes: planned.bytes(),
-            requirements: vulkan(requirements.of(shape)),
+            requirements: vulkan(required),
             usage: shape.usage(),
-            tiling,
+            tiling: required.tiling,
         })
     };
     let copy = |planned: &Planned, usage: Use, rehearsal: &mut Rehearsal<'_>| {
@@ -92,6 +92,6 @@ pub fn rehearse(plans: &Plans, job: &Job, driver: Driver<'_>, budget_bytes: u64,
 }
 
 fn vulkan(requirement: Requirement) -> vk::MemoryRequirements {
-    let Requirement { bound_bytes: size, alignment_bytes: alignment, memory_type_bits } = requirement;
+    let Requirement { bound_bytes: size, alignment_bytes: alignment, memory_type_bits, .. } = requirement;
     vk::MemoryRequirements { size, alignment, memory_type_bits }
 }

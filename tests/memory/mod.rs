@@ -2,6 +2,7 @@
 
 mod budget;
 mod study;
+mod tiling;
 mod touched;
 
 use crate::support::choices::{words, words_but};

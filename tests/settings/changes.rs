@@ -110,7 +110,7 @@ fn every_row_has_a_key_a_help_and_a_possible_default() {
 }
 
 /// Settings of the device that is opened, which a picture's values do not reach: tests/techniques/collapse.rs and tests/memory.
-const OF_DEVICE: [&str; 4] = ["allocation", "memory-block", "memory-budget", "touched"];
+const OF_DEVICE: [&str; 5] = ["allocation", "memory-block", "image-tiling", "memory-budget", "touched"];
 
 /// Compares each value of each such row of the technique's own tables, or of the common one; `least`: how many values.
 fn require_same(technique: &str, is_common: bool, least: usize) {

@@ -12,6 +12,7 @@ pub use rows::{ArenaPlace, ArenaRow, MemoryReport, MemoryRow, MemorySums, PassBy
 
 use crate::error::Result;
 use crate::gpu::{ImageDescription, marks};
+use crate::memory::Tiling;
 use crate::memory::kinds::{Kinds, Use};
 use crate::memory::ledger::{BlockState, Entry, Snapshot};
 use crate::plan::{Peak, Plan, Planned, PlannedArena, Requirements, Shape, Sharing};
@@ -221,6 +222,7 @@ fn unplanned(entry: &Entry) -> MemoryRow {
         format: None,
         extent: None,
         layers: None,
+        tiling: None,
         samples: None,
         touched_bytes: None,
         arena: None,
@@ -250,6 +252,7 @@ fn row(
         Shape::Image(image) => Some(image),
         Shape::Buffer { .. } => None,
     };
+    let is_linear = image.is_some() && required.tiling == Tiling::Linear;
     Ok(MemoryRow {
         name: planned.name.clone(),
         group: planned.group.to_owned(),
@@ -267,6 +270,7 @@ fn row(
             Some(depth) => format!("{}x{depth}", image.extent),
         }),
         layers: image.and_then(|image| image.layer_count),
+        tiling: is_linear.then(|| required.tiling.name().to_owned()),
         samples: image.map(|image| image.samples).filter(|samples| *samples > 1),
         touched_bytes: None,
         arena: sharing.part(index).map(|(arena, part)| ArenaPlace {
@@ -280,6 +284,6 @@ fn row(
             Shape::Image(image) => image.usage.as_raw(),
             Shape::Buffer { flags, .. } => flags.as_raw(),
         }),
-        kind: kind(&planned.shape),
+        kind: kind(&planned.shape) + if is_linear { ", linear" } else { "" },
     })
 }

@@ -38,6 +38,9 @@ pub struct MemoryRow {
     /// Layers; None of buffers and of images without layers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<u32>,
+    /// `linear`, of an image whose texels lie row by row; None of every other one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tiling: Option<String>,
     /// Samples a pixel, 2 or more; None of all that has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<u32>,

@@ -289,6 +289,15 @@ pub const GROUPS: &[Group] = &[
         must: SAME,
     },
     Group {
+        name: "tiling",
+        technique: NAME,
+        place: CORNELL,
+        common: &[VPLS],
+        twin: Twin::Method(&[("image-tiling", "optimal")]),
+        methods: &[&[("image-tiling", "linear")], &[("image-tiling", "linear"), ("storage", "buffer")]],
+        must: SAME,
+    },
+    Group {
         name: "touched",
         technique: NAME,
         place: CORNELL,

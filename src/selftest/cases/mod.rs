@@ -119,7 +119,7 @@ mod tests {
                         last.map_or(setting.default, |(_, text)| *text) == *choice
                     };
                     // How memory is kept and what is counted is the device's, whatever is drawn.
-                    let is_device_s = ["allocation", "touched"].contains(&setting.key);
+                    let is_device_s = ["allocation", "image-tiling", "touched"].contains(&setting.key);
                     let tries = |case: &Case| is_device_s || case.group.technique == technique.name();
                     let is_tried = all().filter(tries).any(|case| {
                         let twin = case.twin_settings().filter(|(name, _)| *name == technique.name());
