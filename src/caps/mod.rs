@@ -20,6 +20,9 @@ pub struct Caps {
     /// None: there is no VK_EXT_conservative_rasterization, or it was not looked up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conservative: Option<ConservativeRules>,
+    /// None: there is no VK_EXT_sample_locations, or it was not looked up.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sample_locations: Option<SampleLocationRules>,
     pub heaps: Vec<Heap>,
     pub memory_types: Vec<MemoryType>,
     /// There for drivers on which it was measured only; a live device is asked instead.
@@ -39,6 +42,17 @@ impl Caps {
         let mut endless = self.clone();
         endless.heaps.iter_mut().for_each(|heap| heap.bytes = u64::MAX);
         endless
+    }
+
+    /// Numbers of samples a pixel, more than one and rising, that can be placed at sixteenths of it in pictures of floats and in depth
+    /// buffers.
+    pub fn placed_sample_counts(&self) -> Vec<u32> {
+        let Formats { float_color_sample_counts, float_depth_sample_counts, .. } = &self.formats;
+        let rules = self.sample_locations.iter().filter(|rules| rules.has_sixteenths());
+        let counts = rules.flat_map(|rules| rules.sample_counts.iter().copied());
+        let is_drawn =
+            |count: &u32| [float_color_sample_counts, float_depth_sample_counts].iter().all(|has| has.contains(count));
+        counts.filter(|count| [2, 4, 8, 16].contains(count)).filter(is_drawn).collect()
     }
 
     /// How a plan without the device rounds: as measured, or not at all where that was not done.
@@ -68,6 +82,24 @@ impl ConservativeRules {
         let lacking = (margin_px - self.overestimation_px).max(0.0);
         let step = if self.extra_step_px > 0.0 { self.extra_step_px } else { self.most_extra_px };
         if step > 0.0 { ((lacking / step).ceil() * step).min(self.most_extra_px) } else { 0.0 }
+    }
+}
+
+/// Where VK_EXT_sample_locations lets a device's samples be, the same places in every pixel.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampleLocationRules {
+    /// Numbers of samples a pixel that can be placed, rising.
+    pub sample_counts: Vec<u32>,
+    /// Places lie at whole multiples of 1 / 2^this pixels.
+    pub sub_pixel_bits: u32,
+    /// The least and the greatest place along a side of a pixel (pixels).
+    pub range_px: [f32; 2],
+}
+
+impl SampleLocationRules {
+    /// Whether samples may lie at every sixteenth of a pixel, which is what the least of devices have.
+    pub fn has_sixteenths(&self) -> bool {
+        self.sub_pixel_bits >= 4 && self.range_px[0] <= 0.0 && self.range_px[1] >= 15.0 / 16.0
     }
 }
 

@@ -95,6 +95,10 @@ abilities! {
         "VK_EXT_conservative_rasterization with degenerateTrianglesRasterized",
         "conservative rasterisation of every triangle",
         |caps| caps.conservative.is_some_and(|rules| rules.draws_degenerate_triangles);
+    /// Samples lie in sixteenths of a pixel where they are told to.
+    SampleLocations:
+        "VK_EXT_sample_locations at sixteenths of a pixel", "placed samples",
+        |caps| !caps.placed_sample_counts().is_empty();
     /// Shaders send rays through structures that the driver builds.
     RayQuery: "VK_KHR_ray_query with VK_KHR_acceleration_structure", "ray queries", |caps| caps.features.ray_query;
     /// Corners are drawn where they are, within 1/256 pixel: depths are of the planes that shadow rays start off.

@@ -36,6 +36,8 @@ pub struct Barrier {
     pub(super) to: Access,
     /// The contents need not survive.
     pub(super) discard: bool,
+    /// The image's samples lie where `Commands::place_samples` says.
+    pub(super) is_placed: bool,
 }
 
 /// The resource that a barrier covers.
@@ -48,14 +50,15 @@ pub enum Target {
 impl Edge<'_, Buffer> {
     /// The next access: the right side.
     pub fn to(self, access: Access) -> Barrier {
-        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
+        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false, is_placed: false }
     }
 }
 
 impl Edge<'_, Image> {
     /// The next access: the right side.
     pub fn to(self, access: Access) -> Barrier {
-        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false }
+        let is_placed = self.resource.description.are_placed;
+        Barrier { target: self.resource.target(), from: self.from, to: access, discard: false, is_placed }
     }
 }
 
@@ -71,7 +74,7 @@ impl Buffer {
 
     /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
+        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true, is_placed: false }
     }
 }
 
@@ -87,7 +90,8 @@ impl Image {
 
     /// First touch of the frame, old contents not needed; it waits for the resource that had the bytes before.
     pub fn discard(&self, access: Access) -> Barrier {
-        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true }
+        let is_placed = self.description.are_placed;
+        Barrier { target: self.target(), from: self.takes_over, to: access, discard: true, is_placed }
     }
 }
 
@@ -135,13 +139,15 @@ impl Barrier {
             .size(vk::WHOLE_SIZE)
     }
 
-    pub(super) fn image_barrier(
+    /// `places`: where samples of images that are `is_placed` lie, chained for the change of their layout.
+    pub(super) fn image_barrier<'a>(
         &self,
         image: vk::Image,
         aspect: vk::ImageAspectFlags,
-    ) -> vk::ImageMemoryBarrier2<'static> {
+        places: Option<&'a vk::SampleLocationsInfoEXT<'a>>,
+    ) -> vk::ImageMemoryBarrier2<'a> {
         let old_layout = if self.discard { vk::ImageLayout::UNDEFINED } else { self.from.layout() };
-        vk::ImageMemoryBarrier2::default()
+        let barrier = vk::ImageMemoryBarrier2::default()
             .src_stage_mask(self.from.stages())
             .src_access_mask(self.from.writes())
             .dst_stage_mask(self.to.stage())
@@ -154,7 +160,11 @@ impl Barrier {
                     .aspect_mask(aspect)
                     .level_count(vk::REMAINING_MIP_LEVELS)
                     .layer_count(vk::REMAINING_ARRAY_LAYERS),
-            )
+            );
+        // Several barriers may have the one, which a chain that is pushed, and so mutable, would not let them.
+        let chained =
+            places.filter(|_| self.is_placed).map_or(std::ptr::null(), |places| std::ptr::from_ref(places).cast());
+        vk::ImageMemoryBarrier2 { p_next: chained, ..barrier }
     }
 }
 
@@ -165,7 +175,7 @@ mod tests {
     #[test]
     fn a_reader_after_a_known_reader_needs_no_barrier_and_a_writer_always_does() {
         let target = Target::Buffer(vk::Buffer::null());
-        let barrier = |from: AccessSet, to| Barrier { target, from, to, discard: false }.is_needed();
+        let barrier = |from: AccessSet, to| Barrier { target, from, to, discard: false, is_placed: false }.is_needed();
         assert!(barrier(Access::ComputeWrite.into(), Access::ComputeRead));
         assert!(!barrier(Access::ComputeRead.into(), Access::ComputeRead));
         // The write was made visible to compute only: another stage needs its own barrier.
@@ -177,7 +187,13 @@ mod tests {
     #[test]
     fn an_image_changes_layout_even_between_readers() {
         let target = Target::Image(vk::Image::null(), vk::ImageAspectFlags::COLOR);
-        let barrier = Barrier { target, from: Access::ComputeRead.into(), to: Access::ComputeSample, discard: false };
+        let barrier = Barrier {
+            target,
+            from: Access::ComputeRead.into(),
+            to: Access::ComputeSample,
+            discard: false,
+            is_placed: false,
+        };
         assert!(barrier.is_needed());
     }
 }

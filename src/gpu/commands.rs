@@ -10,6 +10,7 @@ use super::marks::Marked;
 use super::marks::noted::{Noted, Notes};
 use super::marks::shape::Part;
 use super::pipeline::GraphicsPipeline;
+use super::places::SamplePlaces;
 use super::statistics::Statistics;
 use super::timing::{Clock, Timestamps};
 use super::{Access, Buffer, Gpu};
@@ -99,6 +100,8 @@ pub struct Commands {
     heirs: Heirs,
     /// Touches without a shader.
     pub(super) notes: Notes,
+    /// None: every sample lies where Vulkan's standard has it.
+    pub(super) places: Option<SamplePlaces>,
 }
 
 /// For each resource that takes bytes over, the resources that had them before it in the frame.
@@ -130,6 +133,7 @@ impl Commands {
             touched: Vec::new(),
             heirs: Heirs::new(),
             notes: Notes::default(),
+            places: None,
         };
         gpu.name(pool, name);
         if has_statistics {
@@ -227,6 +231,7 @@ impl Commands {
         let mut memory = Vec::new();
         let mut buffers = Vec::new();
         let mut images = Vec::new();
+        let places = self.places.as_ref().map(SamplePlaces::info);
         for barrier in barriers {
             self.check_left_side(&barrier);
             if barrier.takes_over() {
@@ -235,7 +240,7 @@ impl Commands {
             if barrier.is_needed() {
                 match barrier.target {
                     Target::Buffer(buffer) => buffers.push(barrier.buffer_barrier(buffer)),
-                    Target::Image(image, aspect) => images.push(barrier.image_barrier(image, aspect)),
+                    Target::Image(image, aspect) => images.push(barrier.image_barrier(image, aspect, places.as_ref())),
                 }
             }
             let known = self.truth.entry(barrier.target).or_default();

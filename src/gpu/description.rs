@@ -18,6 +18,8 @@ pub struct GraphicsDescription<'a> {
     pub color_formats: &'a [vk::Format],
     /// Samples a pixel of every attachment.
     pub samples: u32,
+    /// They lie where `Commands::place_samples` says (VK_EXT_sample_locations); else where Vulkan's standard has them.
+    pub are_placed: bool,
     pub blending: Blending,
     pub depth_format: Option<vk::Format>,
     pub depth_write: bool,

@@ -39,7 +39,7 @@ pub struct Gpu {
     /// None: its clock cannot be read beside the host's.
     calibration: Option<Calibration>,
     validation: Option<Validation>,
-    instance: ash::Instance,
+    pub(super) instance: ash::Instance,
     physical: vk::PhysicalDevice,
     /// Serialises submits: a queue is externally synchronised.
     pub(super) submit_lock: Mutex<()>,

@@ -29,6 +29,8 @@ pub struct ImageDescription {
     pub depth: Option<u32>,
     /// Samples a pixel: 1, or another power of two where the image has one level and is only drawn into, resolved, and fetched.
     pub samples: u32,
+    /// They lie where `Commands::place_samples` says, which changes of a depth buffer's layout must know.
+    pub are_placed: bool,
     pub usage: vk::ImageUsageFlags,
 }
 
@@ -44,6 +46,7 @@ impl ImageDescription {
             is_cube: false,
             depth: None,
             samples,
+            are_placed: false,
             usage,
         }
     }
@@ -104,7 +107,8 @@ impl ImageDescription {
         let reinterpreted = is_stored_otherwise || self.sampled_as.is_some();
         let flag = |flag, is_set| if is_set { flag } else { vk::ImageCreateFlags::empty() };
         let flags = flag(vk::ImageCreateFlags::MUTABLE_FORMAT, reinterpreted)
-            | flag(vk::ImageCreateFlags::CUBE_COMPATIBLE, self.is_cube);
+            | flag(vk::ImageCreateFlags::CUBE_COMPATIBLE, self.is_cube)
+            | flag(vk::ImageCreateFlags::SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_EXT, self.are_placed);
         vk::ImageCreateInfo::default()
             .flags(flags)
             .image_type(if self.depth.is_some() { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })

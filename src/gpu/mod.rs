@@ -20,6 +20,7 @@ pub mod marks;
 pub mod occlusion;
 pub mod pipeline;
 mod pipeline_store;
+mod places;
 pub mod probe;
 pub mod readback;
 pub mod recorded;

@@ -235,8 +235,12 @@ impl GraphicsPipeline {
         if let Some(overestimate) = &mut overestimate {
             raster = raster.push_next(overestimate);
         }
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+        let mut placed = vk::PipelineSampleLocationsStateCreateInfoEXT::default().sample_locations_enable(true);
+        let mut multisample = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::from_raw(description.samples));
+        if description.are_placed {
+            multisample = multisample.push_next(&mut placed);
+        }
         let [front, back] = description.stencil.map(StencilUse::states).unwrap_or_default();
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .stencil_test_enable(description.stencil.is_some())
@@ -255,6 +259,9 @@ impl GraphicsPipeline {
         ];
         if description.stencil.is_some() {
             dynamic_states.extend([vk::DynamicState::STENCIL_REFERENCE, vk::DynamicState::STENCIL_WRITE_MASK]);
+        }
+        if description.are_placed {
+            dynamic_states.push(vk::DynamicState::SAMPLE_LOCATIONS_EXT);
         }
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
         let mut rendering = vk::PipelineRenderingCreateInfo::default()

@@ -30,7 +30,7 @@ pub(super) struct Recipe {
 struct Drawn {
     vertex_buffers: Vec<VertexBuffer>,
     color_formats: Vec<vk::Format>,
-    samples: u32,
+    samples: (u32, bool),
     blending: Blending,
     depth: (Option<vk::Format>, bool, vk::CompareOp, bool),
     /// Bits of `depth_bias` and `conservative_margin_px`.
@@ -65,6 +65,7 @@ impl Recipe {
             vertex_buffers,
             color_formats,
             samples,
+            are_placed,
             blending,
             depth_format,
             depth_write,
@@ -79,7 +80,7 @@ impl Recipe {
         let drawn = Drawn {
             vertex_buffers: vertex_buffers.to_vec(),
             color_formats: color_formats.to_vec(),
-            samples,
+            samples: (samples, are_placed),
             blending,
             depth: (depth_format, depth_write, depth_compare, depth_clamp),
             depth_bias: [slope, steps].map(f32::to_bits),

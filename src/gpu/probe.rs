@@ -1,6 +1,8 @@
 //! A physical device's answers, looked up once, as `Caps`.
 
-use crate::caps::{Caps, ConservativeRules, Features, Formats, Heap, HeapBudget, Identity, Limits, MemoryType};
+use crate::caps::{
+    Caps, ConservativeRules, Features, Formats, Heap, HeapBudget, Identity, Limits, MemoryType, SampleLocationRules,
+};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::ffi::CStr;
@@ -47,6 +49,9 @@ pub fn used_extensions(instance: &ash::Instance, physical: vk::PhysicalDevice, c
     }
     if caps.conservative.is_some() {
         used.push(ash::ext::conservative_rasterization::NAME);
+    }
+    if caps.sample_locations.is_some() {
+        used.push(ash::ext::sample_locations::NAME);
     }
     let there = extensions(instance, physical);
     // A device that has the first wants it enabled; the second is a second look at its clock.
@@ -102,6 +107,18 @@ fn conservative(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Conse
         most_extra_px: conservative.max_extra_primitive_overestimation_size,
         extra_step_px: conservative.extra_primitive_overestimation_size_granularity,
         draws_degenerate_triangles: conservative.degenerate_triangles_rasterized != 0,
+    }
+}
+
+fn sample_locations(instance: &ash::Instance, physical: vk::PhysicalDevice) -> SampleLocationRules {
+    let mut locations = vk::PhysicalDeviceSampleLocationsPropertiesEXT::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut locations);
+    // SAFETY: a live instance and one of its physical devices, which has the extension of the chained struct.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    SampleLocationRules {
+        sample_counts: counts(locations.sample_location_sample_counts),
+        sub_pixel_bits: locations.sample_location_sub_pixel_bits,
+        range_px: locations.sample_location_coordinate_range,
     }
 }
 
@@ -214,6 +231,7 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
         },
         formats: formats(instance, physical),
         conservative: has("VK_EXT_conservative_rasterization").then(|| conservative(instance, physical)),
+        sample_locations: has("VK_EXT_sample_locations").then(|| sample_locations(instance, physical)),
         heaps: memory
             .memory_heaps_as_slice()
             .iter()

@@ -1,6 +1,7 @@
 //! Rendering: opened into whole images, of one sample a pixel or several.
 
 use super::marks::shape::Part;
+use super::places::SamplePlaces;
 use super::{Access, Commands, Image};
 use crate::units::Extent;
 use ash::vk;
@@ -118,6 +119,15 @@ impl Commands {
             self.note_attached(image, layers, clear.is_some(), access.writes());
         }
         self.set_window([0, 0], extent);
+        if let Some(places) = &self.places {
+            places.set(&self.gpu, self.buffer());
+        }
+    }
+
+    /// Places the samples of what is drawn from here on by pipelines, and into images, whose samples are placed: as many of them as
+    /// there are places, px from the upper left corners of their pixels. The device can do so (`Caps::placed_sample_counts`).
+    pub fn place_samples(&mut self, places_px: impl IntoIterator<Item = [f32; 2]>) {
+        self.places = Some(SamplePlaces::new(places_px));
     }
 
     pub fn end_rendering(&mut self) {

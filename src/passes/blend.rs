@@ -209,6 +209,7 @@ impl Blend {
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[target.samples.format],
                 samples: target.samples.count,
+                are_placed: target.samples.are_placed,
                 blending: match target.over {
                     Over::Picture => Blending::Over,
                     Over::Nothing => Blending::Layer,

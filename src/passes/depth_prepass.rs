@@ -91,6 +91,7 @@ impl DepthPrepass {
                     vertex_buffers,
                     color_formats: &[],
                     samples: samples.count,
+                    are_placed: samples.are_placed,
                     blending: Blending::Replace,
                     depth_format: Some(FORMAT),
                     depth_write: true,

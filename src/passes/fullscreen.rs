@@ -16,6 +16,7 @@ pub fn description<'a>(fragment: &'a Shader, color_formats: &'a [vk::Format]) ->
         vertex_buffers: &[],
         color_formats,
         samples: 1,
+        are_placed: false,
         blending: Blending::Replace,
         depth_format: None,
         depth_write: false,

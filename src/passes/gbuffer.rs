@@ -432,6 +432,7 @@ impl GBufferPass {
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,
+                    are_placed: false,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,

@@ -13,13 +13,15 @@ pub struct Samples {
     /// Fragment shaders run once for each sample that is covered, at its place; else once for all of a pixel, at a place on the
     /// triangle.
     are_shaded: bool,
+    /// They lie where `Commands::place_samples` says.
+    pub are_placed: bool,
     /// The format of the picture that they are drawn into.
     pub format: vk::Format,
 }
 
 impl Samples {
     /// The middle of the pixel.
-    pub const ONE: Self = Self { count: 1, are_shaded: false, format: PICTURE_FORMAT };
+    pub const ONE: Self = Self { count: 1, are_shaded: false, are_placed: false, format: PICTURE_FORMAT };
 
     /// What the settings ask for.
     pub fn new(values: &Values) -> Self {
@@ -28,7 +30,12 @@ impl Samples {
             SampleFormat::Half if count > 1 => vk::Format::R16G16B16A16_SFLOAT,
             _ => PICTURE_FORMAT,
         };
-        Self { count, are_shaded: count > 1 && values.is_on("sample-shading"), format }
+        Self { count, are_shaded: count > 1 && values.is_on("sample-shading"), are_placed: false, format }
+    }
+
+    /// So many, each shaded at its place, which commands say.
+    pub fn placed(count: u32) -> Self {
+        Self { count, are_shaded: true, are_placed: true, format: PICTURE_FORMAT }
     }
 
     /// There is more than one.

@@ -112,6 +112,14 @@ impl Plan {
         self.push(group, name, Shape::Buffer { bytes, flags, usage: Use::Frame });
     }
 
+    /// Samples of this depth buffer lie where commands place them.
+    pub fn place_samples(&mut self, name: &str) {
+        let index = self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"));
+        if let Shape::Image(description) = &mut self.resources[index].shape {
+            description.are_placed = true;
+        }
+    }
+
     pub fn push(&mut self, group: &'static str, name: impl Into<String>, shape: Shape) {
         let name = name.into();
         assert!(self.resources.iter().all(|planned| planned.name != name), "{name} is planned twice");

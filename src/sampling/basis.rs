@@ -18,6 +18,8 @@ pub struct Basis {
     pub sides: [Side; 2],
     further: Vec<Dimension>,
     points: Points,
+    /// Places lie at sixteenths of pixels.
+    is_in_sixteenths: bool,
 }
 
 impl Basis {
@@ -40,7 +42,17 @@ impl Basis {
         let count = (samples_per_px * area_px).round().max(1.0) as u32;
         let asked = Asked { sampler, sides, count, dimensions: 2 + further.len(), seed, places };
         let points = kept::points(&asked, user_folder::cache().map(|folder| folder.join("patterns")).as_deref())?;
-        Ok(Self { sides, further: further.to_vec(), points })
+        Ok(Self { sides, further: further.to_vec(), points, is_in_sixteenths: false })
+    }
+
+    /// The same with each sample at the sixteenth of its pixel that is nearest, as hardware has them. The sides are whole.
+    pub fn in_sixteenths(self) -> Self {
+        assert!(
+            self.sides.iter().all(|side| side.whole_px().is_some()),
+            "bases begin at parts of pixels: {:?}",
+            self.sides
+        );
+        Self { is_in_sixteenths: true, ..self }
     }
 
     /// Number of samples of one basis.
@@ -51,7 +63,15 @@ impl Basis {
     /// Place of a member's sample in the first basis, px from its upper left corner.
     pub fn place_px(&self, member: u32) -> [f64; 2] {
         let point = &self.points[member as usize];
-        [0, 1].map(|axis| point[axis] * self.sides[axis].length_px())
+        [0, 1].map(|axis| {
+            let length_px = self.sides[axis].length_px();
+            let at_px = point[axis] * length_px;
+            if !self.is_in_sixteenths {
+                return at_px;
+            }
+            let pixel = at_px.floor().min(length_px - 1.0);
+            pixel + (16.0 * (at_px - pixel)).round().min(15.0) / 16.0
+        })
     }
 
     /// The number of 0 to 1 without 1 that a member has in `dimension`; None: it is none of the basis's.
@@ -155,6 +175,25 @@ mod tests {
                 slices.sort_by(f32::total_cmp);
                 slices.dedup();
                 assert_eq!(slices.len() as u32, side * side * samples, "{}: {slices:?}", sampler.name());
+            }
+        }
+    }
+
+    proptest! {
+        /// In sixteenths a sample stays in its pixel, by a thirty-second at most from where it was, but at the last one by a sixteenth.
+        #[test]
+        fn sixteenths_are_near(seed in any::<u32>(), side in 1u32..5, index in 0..Sampler::ALL.len()) {
+            let sides = [Side::new(side, 1); 2];
+            let free = Basis::new(sides, &[], 4.0, Sampler::ALL[index], Places::Spread, seed).unwrap();
+            let snapped = free.clone().in_sixteenths();
+            prop_assert_eq!(free.pattern().samples_per_pixel(), snapped.pattern().samples_per_pixel());
+            for member in 0..free.member_count() {
+                for (at, near) in free.place_px(member).into_iter().zip(snapped.place_px(member)) {
+                    prop_assert_eq!(at.floor(), near.floor());
+                    prop_assert_eq!((16.0 * near).fract(), 0.0);
+                    let most = if near.fract() == 15.0 / 16.0 { 1.0 / 16.0 } else { 1.0 / 32.0 };
+                    prop_assert!((at - near).abs() <= most + 1e-12, "{} {}", at, near);
+                }
             }
         }
     }

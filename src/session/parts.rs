@@ -80,11 +80,20 @@ impl Renderer {
 
     /// Records and runs a part, and adds what that took to `total`.
     fn run_part(&self, part: Part, total: &mut FrameTime) -> Result<()> {
+        self.record_and_run(total, |cmd| self.frame.record_part(cmd, &self.scene_gpu, &self.block.borrow(), part))
+    }
+
+    /// Runs what is recorded now, some of a frame's passes, and adds what both took to `total`.
+    pub(super) fn record_and_run(
+        &self,
+        total: &mut FrameTime,
+        record: impl FnOnce(&mut Commands) -> Result<()>,
+    ) -> Result<()> {
         let began = Instant::now();
         let PartRecording { name, recording, heirs } = &self.part_recording;
         let mut cmd = Commands::begin(&self.gpu, name, *recording)?;
         cmd.set_heirs(heirs.clone());
-        self.frame.record_part(&mut cmd, &self.scene_gpu, &self.block.borrow(), part)?;
+        record(&mut cmd)?;
         let recorded = cmd.finish()?;
         let record_ns = began.elapsed().as_nanos() as u64;
         let places = self.places(recorded.passes());

@@ -129,9 +129,15 @@ impl Renderer {
     /// `times` runs from `index` on.
     fn run(&self, index: u32, times: u32) -> Result<FrameTime> {
         let host = self.begin_run(index)?;
-        let time = self.recorded.run_times(times)?;
+        let time = if self.frame.records_each_run() {
+            let mut time = FrameTime { host, ..FrameTime::none(self.passes().len()) };
+            self.record_and_run(&mut time, |cmd| self.frame.record(cmd, &self.scene_gpu, &self.block.borrow()))?;
+            time
+        } else {
+            FrameTime { host, ..self.recorded.run_times(times)? }
+        };
         self.runs.set(index + times);
-        Ok(FrameTime { host, ..time })
+        Ok(time)
     }
 
     /// What comes before the run of this index: the frame's block, and the host's part, with its passes and their nanoseconds.

@@ -281,6 +281,11 @@ pub trait Frame {
         false
     }
 
+    /// Whether runs have other commands: each is recorded by `record` when its turn comes, after its `begin_run`.
+    fn records_each_run(&self) -> bool {
+        false
+    }
+
     /// The host's part of a run, before it is submitted: the run before has ended. Its passes, with their time in
     /// nanoseconds, which is part of the frame's; the same in each run.
     ///

@@ -188,6 +188,10 @@ impl Frame for FrameWithPass {
         self.frame.runs_alike()
     }
 
+    fn records_each_run(&self) -> bool {
+        self.frame.records_each_run()
+    }
+
     fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
         self.frame.begin_run(run)
     }

@@ -7,9 +7,9 @@ layout(set = 0, binding = 3) uniform sampler2D drawn;
 
 void main() {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
-    uvec2 place = place_of(pixel);
+    uvec2 place = place_of(first_of_run(), pixel);
     if (place.x == NO_SAMPLE || place.y == NO_SAMPLE) {
         discard;
     }
-    add_sample(pixel, texelFetch(drawn, ivec2(place), 0).rgb);
+    add_sample(first_of_run(), pixel, texelFetch(drawn, ivec2(place), 0).rgb);
 }

@@ -7,11 +7,11 @@
 // xyz: sum of the samples so far; w: their number.
 layout(std430, set = 0, binding = 2) buffer Sums { vec4 sums[]; };
 
-void add_sample(uvec2 pixel, vec3 radiance) {
+void add_sample(const in uint member, uvec2 pixel, vec3 radiance) {
     vec4 sum = vec4(radiance, 1.0);
     uint index = pixel.y * frame.width_px + pixel.x;
     uint of_period = pixel.y % params.period_y_px * params.period_x_px + pixel.x % params.period_x_px;
-    if (members[params.firsts_at + of_period] != frame.sample_index) {
+    if (members[params.firsts_at + of_period] != member) {
         sum += sums[index];
     }
     sums[index] = sum;

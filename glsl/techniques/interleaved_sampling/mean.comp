@@ -5,8 +5,8 @@
 #include "frame.glsl"
 
 struct MeanParams {
-    // The last of the picture's members.
-    uint last_member;
+    // The last run of the picture.
+    uint last_run;
 };
 
 layout(local_size_x = 64, local_size_y = 1) in;
@@ -24,7 +24,7 @@ layout(set = 0, binding = 3, rgba32f) writeonly uniform image2D color;
 
 void main() {
     uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (frame.sample_index != params.last_member || pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
+    if (frame.sample_index != params.last_run || pixel.x >= frame.width_px || pixel.y >= frame.height_px) {
         return;
     }
     uint source = pixel.y * frame.width_px + pixel.x;

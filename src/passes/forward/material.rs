@@ -63,6 +63,7 @@ impl Material {
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[samples.format],
                     samples: samples.count,
+                    are_placed: samples.are_placed,
                     blending: Blending::Replace,
                     depth_format: Some(depth_prepass::FORMAT),
                     depth_write: !has_prepass,

@@ -42,6 +42,7 @@ impl CasterPipelines {
                     vertex_buffers,
                     color_formats: &[],
                     samples: 1,
+                    are_placed: false,
                     blending: Blending::Replace,
                     depth_format: Some(FORMAT),
                     depth_write: true,

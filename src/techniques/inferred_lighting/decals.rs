@@ -54,6 +54,7 @@ impl Decals {
                 vertex_buffers: mesh::vertex_buffers(scene),
                 color_formats: &[super::geometry::target_format(choices.packing)],
                 samples: 1,
+                are_placed: false,
                 blending: Blending::Over,
                 depth_format: Some(choices.depth_format()),
                 depth_write: false,

@@ -230,6 +230,7 @@ impl Geometry {
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &formats,
                     samples: 1,
+                    are_placed: false,
                     blending: Blending::Replace,
                     depth_format: Some(choices.depth_format()),
                     depth_write: true,

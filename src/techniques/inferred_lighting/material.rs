@@ -165,6 +165,7 @@ impl Material {
                     vertex_buffers: mesh::vertex_buffers(scene),
                     color_formats: &[filter.samples.format],
                     samples: filter.samples.count,
+                    are_placed: false,
                     blending: if alpha == "blend" { Blending::Over } else { Blending::Replace },
                     depth_format: Some(depth_prepass::FORMAT),
                     depth_write: alpha != "blend" && !filter.has_prepass,

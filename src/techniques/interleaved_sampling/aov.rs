@@ -35,7 +35,9 @@ pub fn member(gpu: &Arc<Gpu>, members: &Members, drawn: &Image) -> Result<Aov> {
     let (frame, grid, member) = (members.frame(), members.grid(), members.count() - 1);
     let mut colors = vec![[0.0; 3]; frame.pixel_count() as usize];
     match members.drawing() {
-        Drawing::Tuples => colors.iter_mut().zip(texels).for_each(|(color, texel)| *color = rgb(texel)),
+        Drawing::Tuples | Drawing::SampleLocations => {
+            colors.iter_mut().zip(texels).for_each(|(color, texel)| *color = rgb(texel))
+        }
         Drawing::Layers | Drawing::Stipple => {
             for (index, texel) in (0..).zip(texels) {
                 let [x, y] =

@@ -1,6 +1,7 @@
 //! What the settings come to.
 
 use super::members::{Drawing, Members};
+use crate::caps::Caps;
 use crate::choice::{Choice, choices};
 use crate::error::{Error, Result};
 use crate::frame::{LensPlace, Placement};
@@ -19,6 +20,16 @@ use crate::techniques::interleaved_sampling::slices::SliceChoices;
 use crate::techniques::interleaved_sampling::soft::SoftLights;
 use crate::techniques::{Inputs, NamedPattern};
 use crate::units::Extent;
+
+choices! {
+    /// Where in their pixels samples may lie (`--places`).
+    pub enum PixelPlaces {
+        /// Anywhere.
+        "free" => Free,
+        /// At sixteenths of a pixel.
+        "sixteenths" => Sixteenths,
+    }
+}
 
 choices! {
     /// What samples are spread over (`--effect`).
@@ -66,7 +77,7 @@ const MOST_MEMBERS: f64 = 65536.0;
 pub const PATTERNS: &[NamedPattern] = &[NamedPattern {
     name: "basis",
     summary: "Samples over a basis of pixels, each of which becomes a regular grid",
-    keys: &["basis", "samples", "sampler", "effect", "seed"],
+    keys: &["basis", "samples", "sampler", "effect", "places", "seed"],
     make: |values| pattern(values),
 }];
 
@@ -131,29 +142,71 @@ fn basis(values: &Values, frame: Extent) -> Result<Basis> {
     let seed = values.integer("seed") as u32;
     let places = if effects.contains(&Effect::Aa) { Places::Spread } else { Places::Middles };
     let made = Basis::new(sides, &further, samples, values.choice("sampler"), places, seed);
-    made.map_err(|error| error.within(NAME))
+    let made = made.map_err(|error| error.within(NAME))?;
+    if pixel_places(values)? == PixelPlaces::Free || places == Places::Middles {
+        return Ok(made);
+    }
+    if sides.iter().any(|side| side.whole_px().is_none()) {
+        let text = values.text("basis");
+        return Err(Error::request(format!("--places sixteenths with --basis {text}: bases begin at parts of pixels"))
+            .within(NAME)
+            .note("sides of whole pixels have each sample at one place of its pixel"));
+    }
+    Ok(made.in_sixteenths())
+}
+
+/// Where in their pixels samples lie.
+///
+/// Errors: elsewhere than the device has them (exit code 2).
+fn pixel_places(values: &Values) -> Result<PixelPlaces> {
+    let are_placed = values.is("members", Drawing::SampleLocations);
+    let auto = if are_placed { PixelPlaces::Sixteenths } else { PixelPlaces::Free };
+    let places = values.unless_auto("places", Values::choice).unwrap_or(auto);
+    if are_placed && places == PixelPlaces::Free {
+        let why = "--members sample-locations with --places free: devices have samples at sixteenths of a pixel";
+        return Err(Error::request(why).within(NAME).note("--places sixteenths, or auto, has them there"));
+    }
+    Ok(places)
 }
 
 /// The members of the settings.
 ///
-/// Errors: as of `basis`; a way to draw them that the basis has not (exit code 2).
-fn members(values: &Values, frame: Extent) -> Result<Members> {
-    let (basis, drawing) = (basis(values, frame)?, values.choice("members"));
-    if drawing == Drawing::Tuples && basis.sides.iter().any(|side| side.whole_px().is_none()) {
-        let text = values.text("basis");
+/// Errors: as of `basis`; a way to draw them that the basis, or the effect, has not (exit code 2).
+fn members(values: &Values, frame: Extent, caps: &Caps) -> Result<Members> {
+    let drawing: Drawing = values.choice("members");
+    if drawing == Drawing::SampleLocations && Effect::chosen(values).iter().any(|effect| *effect != Effect::Aa) {
+        let text = values.text("effect");
+        let why = format!(
+            "--members sample-locations with --effect {text}: what is drawn at once is seen from one place at one moment"
+        );
+        return Err(Error::request(why).within(NAME).note("--effect aa works, and --members tuples draws any"));
+    }
+    let is_whole = sides(values, frame)?.iter().all(|side| side.whole_px().is_some());
+    if drawing.is_over_frame() && !is_whole {
+        let (text, name) = (values.text("basis"), drawing.name());
         let why =
-            format!("--members tuples with --basis {text}: a member's samples lie elsewhere in pixel after pixel");
+            format!("--members {name} with --basis {text}: a member's samples lie elsewhere in pixel after pixel");
         return Err(Error::request(why)
             .within(NAME)
             .note("sides of whole pixels have each in one place, and --members layers and stipple draw any"));
     }
-    Ok(Members::new(basis, frame, drawing))
+    let basis = basis(values, frame)?;
+    let at_once = match drawing {
+        Drawing::SampleLocations => {
+            let counts = caps.placed_sample_counts();
+            let enough = counts.iter().find(|count| **count >= basis.member_count());
+            *enough.or(counts.last()).expect("a device without it is refused before")
+        }
+        Drawing::Layers | Drawing::Stipple | Drawing::Tuples => 1,
+    };
+    Ok(Members::new(basis, frame, drawing, at_once))
 }
 
 /// The choices that the settings make.
 pub struct Choices {
     pub drawing: ForwardChoices,
     pub members: Members,
+    pub places: PixelPlaces,
     pub lens: Option<Lens>,
     /// With `--effect motion`, where something moves.
     pub exposure: Option<Exposure>,
@@ -189,15 +242,21 @@ impl Choices {
             true => Exposure::new(inputs)?,
         };
         let soft = if Effect::SoftShadow.is_chosen(values) { Some(SoftLights::new(inputs)?) } else { None };
+        let members = members(values, inputs.view.extent, inputs.caps)?;
+        let samples = match members.drawing() {
+            Drawing::SampleLocations => Samples::placed(members.at_once()),
+            Drawing::Layers | Drawing::Stipple | Drawing::Tuples => Samples::ONE,
+        };
         let mut choices = Self {
-            members: members(values, inputs.view.extent)?,
+            members,
+            places: pixel_places(values)?,
             lens,
             drawing: ForwardChoices::new(
                 NAME,
                 values,
                 (inputs.scene, inputs.stats, soft.as_ref().map_or(inputs.lights, SoftLights::typical)),
                 (inputs.caps, inputs.requirements),
-                Samples::ONE,
+                samples,
             )?,
             exposure,
             soft,

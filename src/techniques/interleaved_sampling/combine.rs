@@ -3,7 +3,7 @@
 //! reads   the member's picture      writes  combine.sums  buffer, 16 B a pixel, kept from member to member
 //!
 //! Why two ways: the paper draws a polygon over the whole frame for each member, behind a mask of its pixels. A thread for each
-//! sample touches those pixels alone, in the same order. No two samples of a member lie in one pixel, unless a side of the basis
+//! sample touches those pixels alone, in the same order; of several members at once a thread for each pixel does, member by member. No two samples of a member lie in one pixel, unless a side of the basis
 //! is shorter than a pixel, which is refused.
 
 use super::members::{Drawing, Members};
@@ -40,6 +40,7 @@ pub fn reads(drawing: Drawing) -> Access {
     match drawing {
         Drawing::Layers | Drawing::Tuples => Access::ComputeRead,
         Drawing::Stipple => Access::FragmentSample,
+        Drawing::SampleLocations => Access::ComputeSample,
     }
 }
 
@@ -47,13 +48,21 @@ pub fn reads(drawing: Drawing) -> Access {
 pub fn usage(drawing: Drawing) -> vk::ImageUsageFlags {
     match drawing {
         Drawing::Layers | Drawing::Tuples => vk::ImageUsageFlags::STORAGE,
-        Drawing::Stipple => vk::ImageUsageFlags::SAMPLED,
+        Drawing::Stipple | Drawing::SampleLocations => vk::ImageUsageFlags::SAMPLED,
     }
 }
 
 enum Way {
     Scattered(ComputePipeline),
-    Stippled { polygon: GraphicsPipeline, sampler: Sampler },
+    Stippled {
+        polygon: GraphicsPipeline,
+        sampler: Sampler,
+    },
+    /// Texels are fetched: the sampler only has to be there.
+    Fetched {
+        pipeline: ComputePipeline,
+        sampler: Sampler,
+    },
 }
 
 pub struct Combine {
@@ -75,6 +84,10 @@ impl Combine {
                 polygon: GraphicsPipeline::new(gpu, &fullscreen::description(&FRAG, &[]))?,
                 sampler: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
             },
+            Drawing::SampleLocations => Way::Fetched {
+                pipeline: ComputePipeline::new(gpu, variant(COMP_VARIANTS, &["samples"]), &[])?,
+                sampler: Sampler::clamped(gpu, vk::Filter::NEAREST)?,
+            },
         };
         Ok(Self { way, frame, sums: resources.buffer(SUMS) })
     }
@@ -82,7 +95,7 @@ impl Combine {
     /// The sums as the pass leaves them.
     pub fn sums(&self) -> Edge<'_, Buffer> {
         self.sums.from(match self.way {
-            Way::Scattered(_) => Access::ComputeWrite,
+            Way::Scattered(_) | Way::Fetched { .. } => Access::ComputeWrite,
             Way::Stippled { .. } => Access::FragmentWrite,
         })
     }
@@ -90,10 +103,11 @@ impl Combine {
     /// Errors: the driver has no more room for sets (exit code 4).
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, table: &Table, drawn: Edge<'_, Image>) -> Result<()> {
         let [across, down] = [table.params.grid_width, table.params.grid_height];
-        let samples = u64::from(across) * u64::from(down);
+        let at_once = u64::from(table.params.members_at_once);
+        let samples = u64::from(across) * u64::from(down) * at_once;
         let invocations = match self.way {
             Way::Scattered(_) => samples,
-            Way::Stippled { .. } => self.frame.pixel_count(),
+            Way::Stippled { .. } | Way::Fetched { .. } => self.frame.pixel_count(),
         };
         let traffic = Traffic {
             read_bytes: Some(samples * (TEXEL_BYTES + SUM_BYTES)),
@@ -113,6 +127,13 @@ impl Combine {
                 cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::ComputeWrite)]);
                 let bound = [&shared[..], &[("drawn", Bound::Storage(drawn.resource))]].concat();
                 cmd.dispatch(pipeline, params, &bound, pipeline.groups([across, down, 1]))
+            }
+            Way::Fetched { pipeline, sampler } => {
+                cmd.barriers([drawn.to(Access::ComputeSample)]);
+                cmd.barriers([self.sums.from(Access::ComputeRead).to(Access::ComputeWrite)]);
+                let sampled = Bound::Sampled(drawn.resource, sampler.handle, Access::ComputeSample);
+                let bound = [&shared[..], &[("drawn", sampled)]].concat();
+                cmd.dispatch(pipeline, params, &bound, pipeline.groups([self.frame.width, self.frame.height, 1]))
             }
             Way::Stippled { polygon, sampler } => {
                 cmd.barriers([drawn.to(Access::FragmentSample)]);

@@ -1,4 +1,5 @@
-//! Mask: with `--members tuples` the depth of pixels in which a member has no sample, so near that nothing is drawn there.
+//! Mask: where members are drawn over the whole frame the depth of pixels in which a member has no sample, so near that nothing is
+//! drawn there; of several members at once, the depth of each of their samples.
 //! Shader: mask.frag.
 //! reads  combine.members      writes  depth.reversed  all of it
 //!
@@ -8,8 +9,10 @@ use super::resources::{DEPTH, NAME};
 use super::table::Table;
 use crate::error::Result;
 use crate::gpu::pipeline::{GraphicsDescription, GraphicsPipeline};
-use crate::gpu::shader::techniques::interleaved_sampling::mask::FRAG;
+use crate::gpu::shader::techniques::interleaved_sampling::mask::FRAG_VARIANTS;
+use crate::gpu::shader::variant;
 use crate::gpu::{Access, Bound, Buffer, Commands, Gpu, Image, Traffic};
+use crate::passes::samples::Samples;
 use crate::passes::{depth_prepass, fullscreen};
 use crate::plan::Plan;
 use std::sync::Arc;
@@ -24,12 +27,17 @@ pub struct Mask {
 }
 
 impl Mask {
+    /// `samples`: of the depth buffer, each of which is a member's.
+    ///
     /// Errors: the driver refuses (exit code 4).
-    pub fn new(gpu: &Arc<Gpu>) -> Result<Self> {
+    pub fn new(gpu: &Arc<Gpu>, samples: Samples) -> Result<Self> {
+        let shader = variant(FRAG_VARIANTS, &[if samples.are_many() { "several" } else { "one" }]);
         let description = GraphicsDescription {
             depth_format: Some(depth_prepass::FORMAT),
             depth_write: true,
-            ..fullscreen::description(&FRAG, &[])
+            samples: samples.count,
+            are_placed: samples.are_placed,
+            ..fullscreen::description(shader, &[])
         };
         Ok(Self { pipeline: GraphicsPipeline::new(gpu, &description)? })
     }

@@ -48,7 +48,7 @@ impl Mean {
             }
         };
         let shader = variant(COMP_VARIANTS, &[if sources.is_some() { "some" } else { "none" }]);
-        let params = MeanParams { last_member: members.count() - 1 };
+        let params = MeanParams { last_run: members.run_count() - 1 };
         let pipeline = ComputePipeline::new(gpu, shader, &[])?;
         Ok(Self { pipeline, params, sources, color: resources.image(COLOR) })
     }
@@ -56,7 +56,7 @@ impl Mean {
     pub fn record(&self, cmd: &mut Commands, frame: &Buffer, sums: Edge<'_, Buffer>) -> Result<()> {
         let extent = self.color.description.extent;
         // One run of all reads and writes.
-        let pixels = extent.pixel_count() / u64::from(self.params.last_member + 1);
+        let pixels = extent.pixel_count() / u64::from(self.params.last_run + 1);
         let source_bytes = if self.sources.is_some() { 4 } else { 0 };
         let traffic = Traffic {
             read_bytes: Some(pixels * (16 + source_bytes)),

@@ -18,6 +18,16 @@ choices! {
         "stipple" => Stipple,
         /// Each over the whole frame, whose other pixels are masked: rasterised once a member, as deep shading is once a tuple.
         "tuples" => Tuples,
+        /// As samples of the device's, several members at once, each behind its own mask: hardware of the paper's proposal
+        /// (section 3.1, VK_EXT_sample_locations).
+        "sample-locations" => SampleLocations,
+    }
+}
+
+impl Drawing {
+    /// A member is drawn over the whole frame, and other pixels are masked.
+    pub fn is_over_frame(self) -> bool {
+        matches!(self, Self::Tuples | Self::SampleLocations)
     }
 }
 
@@ -26,14 +36,18 @@ pub struct Members {
     basis: Basis,
     frame: Extent,
     drawing: Drawing,
+    /// Members that are drawn at once.
+    at_once: u32,
     /// The first of the members that have a sample in each pixel of a period, row by row; `u32::MAX` where none has.
     firsts: Vec<u32>,
     sources: Option<Vec<u32>>,
 }
 
 impl Members {
-    pub fn new(basis: Basis, frame: Extent, drawing: Drawing) -> Self {
-        let mut members = Self { basis, frame, drawing, firsts: Vec::new(), sources: None };
+    /// `at_once`: members that a run draws, one unless samples of the device's are members.
+    pub fn new(basis: Basis, frame: Extent, drawing: Drawing, at_once: u32) -> Self {
+        assert!(at_once == 1 || drawing == Drawing::SampleLocations, "{at_once} members at once as {drawing:?}");
+        let mut members = Self { basis, frame, drawing, at_once, firsts: Vec::new(), sources: None };
         members.firsts = members.firsts_of_pixels();
         members.sources = members.nearest_sources();
         members
@@ -45,6 +59,23 @@ impl Members {
 
     pub fn count(&self) -> u32 {
         self.basis.member_count()
+    }
+
+    /// Members that a run draws: as many as there are left.
+    pub fn at_once(&self) -> u32 {
+        self.at_once
+    }
+
+    /// Runs in which all of them are drawn.
+    pub fn run_count(&self) -> u32 {
+        self.count().div_ceil(self.at_once)
+    }
+
+    /// Where in their pixels the members of a run have their samples, px; the middle where none is left.
+    pub fn places_px(&self, run: u32) -> Vec<[f32; 2]> {
+        let members = run * self.at_once..(run + 1) * self.at_once;
+        let place = |member| self.basis.place_px(member).map(|at_px| at_px.fract() as f32);
+        members.map(|member| if member < self.count() { place(member) } else { [0.5; 2] }).collect()
     }
 
     pub fn frame(&self) -> Extent {
@@ -59,7 +90,7 @@ impl Members {
     pub fn picture(&self) -> Extent {
         match self.drawing {
             Drawing::Layers | Drawing::Stipple => self.grid(),
-            Drawing::Tuples => self.frame,
+            Drawing::Tuples | Drawing::SampleLocations => self.frame,
         }
     }
 
@@ -77,13 +108,17 @@ impl Members {
     pub fn spacing_px(&self) -> [f64; 2] {
         let grid = self.grid();
         let [across, down] = self.basis.sides.map(Side::length_px);
-        let is_whole = self.drawing == Drawing::Tuples;
+        let is_whole = self.drawing.is_over_frame();
         let spacing = |samples: u32, apart: f64| if is_whole || samples == 1 { 1.0 } else { apart };
         [spacing(grid.width, across), spacing(grid.height, down)]
     }
 
     /// How the frame lies in a member's picture: its samples in the middles of texels.
     pub fn placement(&self, member: u32) -> Placement {
+        if self.drawing == Drawing::SampleLocations {
+            // It is the samples that are moved.
+            return Placement::WHOLE;
+        }
         let (picture, place) = (self.picture(), self.basis.place_px(member));
         // Over the whole frame a texel is a pixel, the first of which has a place as its pixel's has.
         let place = if self.drawing == Drawing::Tuples { place.map(f64::fract) } else { place };
@@ -186,7 +221,8 @@ mod tests {
     }
 
     fn drawn(sides: [Side; 2], samples: f64, frame: Extent, drawing: Drawing) -> Members {
-        Members::new(Basis::new(sides, &[], samples, Sampler::Random, Places::Spread, 5).unwrap(), frame, drawing)
+        let basis = Basis::new(sides, &[], samples, Sampler::Random, Places::Spread, 5).unwrap();
+        Members::new(basis, frame, drawing, 1)
     }
 
     proptest! {
@@ -251,6 +287,20 @@ mod tests {
         }
     }
 
+    /// Every sample of the pattern is one of one run's, at its place.
+    #[test]
+    fn samples_of_the_device_are_members() {
+        let basis = Basis::new([Side::new(3, 1), Side::new(2, 1)], &[], 2.5, Sampler::Relaxed, Places::Spread, 5);
+        let basis = basis.unwrap().in_sixteenths();
+        let members = Members::new(basis.clone(), Extent::new(9, 7), Drawing::SampleLocations, 4);
+        assert_eq!((members.count(), members.run_count()), (15, 4));
+        let places: Vec<[f32; 2]> = (0..4).flat_map(|run| members.places_px(run)).collect();
+        assert_eq!((places.len(), places[15]), (16, [0.5; 2]));
+        for sample in basis.pattern().samples() {
+            assert_eq!(places[sample.subset as usize], sample.place_px);
+        }
+    }
+
     #[test]
     fn a_single_member_is_drawn_as_any_picture() {
         let frame = Extent::new(7, 5);
@@ -258,7 +308,7 @@ mod tests {
         assert_eq!(alone.picture(), frame);
         let basis = || Basis::new([Side::new(1, 1); 2], &[], 1.0, Sampler::Relaxed, Places::Spread, 5).unwrap();
         for drawing in Drawing::ALL {
-            assert_eq!(Members::new(basis(), frame, *drawing).placement(0), Placement::WHOLE);
+            assert_eq!(Members::new(basis(), frame, *drawing, 1).placement(0), Placement::WHOLE);
         }
     }
 }

@@ -6,7 +6,8 @@
 //! basis of one pixel that is the accumulation buffer, whose samples are the same in every pixel; with a basis as large as
 //! the frame no two pixels have the same; `--basis` is the way from one to the other.
 //!
-//! A run is a member: moment (on the host, where members differ in more than their place), mask (with `--members tuples`),
+//! A run is a member, or several (`--members sample-locations`): moment (on the host, where members differ in more than their place),
+//! mask (where members are drawn over the whole frame),
 //! shadow_maps (with `--direct-shadow map`), depth, material, blend (where the scene has BLEND surfaces), slices (with `--effect volume`), combine, mean.
 //!
 //! Differences from the paper
@@ -63,6 +64,7 @@ use members::Drawing;
 use moment::Moment;
 use resources::NAME;
 use slices::Slices;
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use table::Table;
@@ -100,7 +102,14 @@ impl Technique for InterleavedSampling {
             ability: Ability::BlendFloats,
             instead: "the other effects work without",
         });
-        forward::needs(values, has_blend).chain(volume).collect()
+        let are_placed = values.is("members", Drawing::SampleLocations);
+        let placed =
+            [Ability::SampleLocations, Ability::SampleShading].into_iter().filter(|_| are_placed).map(|ability| {
+                let instead =
+                    "--members layers, stipple and tuples draw the same samples everywhere, with --places sixteenths";
+                Need { of: "--members sample-locations".to_owned(), ability, instead }
+            });
+        forward::needs(values, has_blend).chain(volume).chain(placed).collect()
     }
 
     fn bounds(&self, _: &Caps) -> Vec<(&'static str, String)> {
@@ -165,9 +174,17 @@ impl Prepared for PreparedInterleaved {
         plan::plan(&self.choices, inputs, &self.listed)
     }
 
+    fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
+        let are_placed = self.choices.members.drawing() == Drawing::SampleLocations;
+        let why =
+            "with --members sample-locations several members are drawn at once; --members tuples draws each alone";
+        Vec::from_iter(are_placed.then(|| (aov::MEMBER, why.to_owned())))
+    }
+
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let lens = self.choices.lens.map(|lens| ("focus", lens.focus.to_string()));
-        self.choices.drawing.resolved().into_iter().chain(lens).collect()
+        let places = ("places", self.choices.places.name().to_owned());
+        self.choices.drawing.resolved().into_iter().chain(lens).chain([places]).collect()
     }
 
     fn host_part(self: Box<Self>, _: &Inputs<'_>) -> Result<HostPart> {
@@ -217,7 +234,7 @@ impl PreparedInterleaved {
             pixels_per_texel: choices.members.spacing_px().map(|spacing| spacing as f32),
         };
         let slices = choices.slices.as_ref();
-        let is_masked = choices.members.drawing() == Drawing::Tuples;
+        let is_masked = choices.members.drawing().is_over_frame();
         Ok(Box::new(InterleavedFrame {
             drawing: Forward::new(gpu, resources, NAME, &choices.drawing, of, scene)?,
             targets: Targets {
@@ -226,11 +243,12 @@ impl PreparedInterleaved {
                 drawn: resources.image(resources::DRAWN),
             },
             table: Table::new(gpu, resources, &choices.members)?,
-            mask: is_masked.then(|| Mask::new(gpu)).transpose()?,
+            mask: is_masked.then(|| Mask::new(gpu, choices.drawing.samples)).transpose()?,
             combine: Combine::new(gpu, resources, &choices.members, inputs.view.extent)?,
             mean: Mean::new(gpu, resources, &choices.members)?,
             moment: Moment::new(gpu, inputs, scene, resources, &choices),
             slices: slices.map(|slices| Slices::new(gpu, resources, slices, &choices.members)).transpose()?,
+            run: Cell::new(0),
             choices,
         }))
     }
@@ -240,19 +258,24 @@ struct InterleavedFrame {
     drawing: Forward,
     targets: Targets,
     table: Table,
-    /// With `--members tuples`.
+    /// Where members are drawn over the whole frame.
     mask: Option<Mask>,
     combine: Combine,
     mean: Mean,
     /// What members see where it is not the same for all.
     moment: Option<Moment>,
     slices: Option<Slices>,
+    /// The one that is drawn, which a recording of placed samples is of.
+    run: Cell<u32>,
     choices: Choices,
 }
 
 impl Frame for InterleavedFrame {
     fn record(&self, cmd: &mut Commands, scene: &SceneGpu, frame: &Buffer) -> Result<()> {
         let scene = self.moment.as_ref().and_then(Moment::scene).unwrap_or(scene);
+        if self.records_each_run() {
+            cmd.place_samples(self.choices.members.places_px(self.run.get()));
+        }
         if let Some(mask) = &self.mask {
             mask.record(cmd, frame, &self.table, &self.targets.depth)?;
         }
@@ -270,7 +293,12 @@ impl Frame for InterleavedFrame {
     }
 
     fn run_count(&self) -> u32 {
-        self.choices.members.count()
+        self.choices.members.run_count()
+    }
+
+    /// Where samples lie is a command's to say.
+    fn records_each_run(&self) -> bool {
+        self.choices.members.drawing() == Drawing::SampleLocations
     }
 
     /// Pixels without a sample of the first members have none to show.
@@ -279,6 +307,7 @@ impl Frame for InterleavedFrame {
     }
 
     fn begin_run(&self, run: &Run<'_>) -> Result<Vec<(String, u64)>> {
+        self.run.set(run.index);
         let begun = self.moment.as_ref().map(|moment| moment.begin(run, &self.choices, &self.drawing));
         Ok(begun.transpose()?.into_iter().collect())
     }

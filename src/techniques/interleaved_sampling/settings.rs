@@ -1,6 +1,6 @@
 //! The settings that only this technique reads.
 
-use super::choices::Effect;
+use super::choices::{Effect, PixelPlaces};
 use super::members::Drawing;
 use super::slices::{PictureDepth, Summation};
 use crate::sampling::sampler::Sampler;
@@ -58,7 +58,20 @@ pub const SETTINGS: &[Setting] = &[
         paper: "Keller 2001, 3.1",
         help: "How members are drawn, the same samples: layers, each as a small picture whose samples are scattered to their \
                pixels; stipple, each as a small picture that textures a polygon over the frame behind a stipple pattern (the \
-               paper's); tuples, each over the whole frame with the pixels of others masked (whole sides of the basis)",
+               paper's); tuples, each over the whole frame with the pixels of others masked (whole sides of the basis); \
+               sample-locations, several at once as samples of the device's, masked likewise (--effect aa, on devices with \
+               VK_EXT_sample_locations: the paper's proposal for hardware)",
+        ..Setting::changing(Changes::Samples)
+    },
+    Setting {
+        key: "places",
+        kind: Kind::Choice(PixelPlaces::WORDS),
+        auto: true,
+        default: "auto",
+        paper: "Keller 2001, 3.1",
+        help: "Where in their pixels samples may lie: free, anywhere; sixteenths, at the nearest sixteenth of a pixel, as \
+               hardware has them (whole sides of the basis); auto: sixteenths with --members sample-locations, else free",
+        unread: |values| unless(values, Effect::Aa, "--effect aa", "all samples lie in the middles of their pixels"),
         ..Setting::changing(Changes::Samples)
     },
     Setting { unread: |values| unless(values, Effect::Volume, "--effect volume", "volumes are not drawn"), ..VOLUME },

@@ -35,6 +35,8 @@ impl Table {
             grid_width: grid.width,
             grid_height: grid.height,
             firsts_at: members.firsts_at(),
+            members: members.count(),
+            members_at_once: members.at_once(),
         };
         Ok(Self { buffer, params })
     }

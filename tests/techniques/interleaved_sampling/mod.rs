@@ -6,6 +6,7 @@ use crate::support::difference::{require_same, rmse};
 use crate::support::program::Program;
 use crate::support::watched::{Watched, both};
 use glam::{Mat4, Vec3};
+use quincunx::caps::Ability;
 use quincunx::choice::Choice;
 use quincunx::sampling::sampler::Sampler;
 use quincunx::scene::{Camera, Projection, Scene};
@@ -62,10 +63,14 @@ fn pixels_are_the_means_of_their_samples() {
     let watched = Watched::with_scene(card(extent, sides));
     let mut partly = 0;
     let sizes = [("1x1", "4"), ("2x2", "4"), ("3x2", "2.5"), ("2.5x1.75", "3"), ("4x3", "0.5"), ("frame", "1")];
-    let drawn = [(Sampler::Relaxed, "stipple"), (Sampler::Relaxed, "tuples")];
-    for (sampler, members) in Sampler::ALL.iter().map(|sampler| (*sampler, "layers")).chain(drawn) {
+    let mut drawn = vec![("stipple", "free"), ("tuples", "free"), ("layers", "sixteenths"), ("tuples", "sixteenths")];
+    if Ability::SampleLocations.is_there(&watched.session.gpu.caps) {
+        drawn.push(("sample-locations", "sixteenths"));
+    }
+    let drawn = drawn.into_iter().map(|(members, places)| (Sampler::Relaxed, members, places));
+    for (sampler, members, places) in Sampler::ALL.iter().map(|sampler| (*sampler, "layers", "free")).chain(drawn) {
         for (basis, samples) in sizes {
-            if members == "tuples" && basis.contains('.') {
+            if basis.contains('.') && (members == "tuples" || places == "sixteenths") {
                 continue;
             }
             // What counts by pixels has a whole number for each.
@@ -79,6 +84,7 @@ fn pixels_are_the_means_of_their_samples() {
                 ("samples", samples),
                 ("sampler", sampler.name()),
                 ("members", members),
+                ("places", places),
                 ("background", "0"),
                 ("rig", "none"),
             ];
@@ -86,7 +92,7 @@ fn pixels_are_the_means_of_their_samples() {
             let counts = watched.integers(&renderer, "combine.sums.samples");
             let picture = renderer.picture().unwrap();
             let spec_basis = if basis == "frame" { "37x23" } else { basis };
-            let spec = format!("basis:basis={spec_basis},samples={samples},sampler={}", sampler.name());
+            let spec = format!("basis:basis={spec_basis},samples={samples},sampler={},places={places}", sampler.name());
             let pattern = patterns::open(&spec).unwrap().pattern;
             let (mut near, mut off) = (0, 0);
             for (index, found) in (0u32..).zip(&picture.pixels) {
@@ -159,6 +165,7 @@ fn what_cannot_be_is_refused_with_what_can() {
         (&[("basis", "0.5x2")], "from 1 to 16384 pixels"),
         (&[("basis", "frame"), ("size", "640x360")], "921600 members"),
         (&[("members", "tuples"), ("basis", "2.5x2")], "--members tuples with --basis 2.5x2: a member's samples lie"),
+        (&[("places", "sixteenths"), ("basis", "2.5x2")], "--places sixteenths with --basis 2.5x2: bases begin"),
         (&[("sampler", "ign"), ("basis", "2.5x2")], "--sampler ign: it gives every pixel the same number"),
         (&[("sampler", "blue-errors"), ("samples", "0.5")], "--sampler blue-errors"),
         (&[("effect", "defocus")], "--effect defocus with --aperture 0"),

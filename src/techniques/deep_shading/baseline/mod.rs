@@ -242,6 +242,7 @@ fn pipeline(
             vertex_buffers: &[],
             color_formats: &[COLOR_FORMAT],
             samples: choices.shading.pass_samples(),
+            are_placed: false,
             blending: Blending::Replace,
             depth_format: Some(DEPTH_FORMAT),
             depth_write: true,

@@ -71,6 +71,7 @@ impl Shade {
                 vertex_buffers: &[],
                 color_formats: &[],
                 samples: 1,
+                are_placed: false,
                 blending: Blending::Replace,
                 depth_format: depth.is_some().then_some(DEPTH_FORMAT),
                 depth_write: false,

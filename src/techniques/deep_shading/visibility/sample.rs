@@ -52,6 +52,7 @@ impl TupleDraws {
                     vertex_buffers: &[],
                     color_formats: if choices.lists.has_zmax { &formats } else { &formats[..1] },
                     samples: 1,
+                    are_placed: false,
                     blending: Blending::Replace,
                     depth_format: Some(DEPTH_FORMAT),
                     depth_write: true,

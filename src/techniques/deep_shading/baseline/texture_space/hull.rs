@@ -41,6 +41,7 @@ impl Hulls {
                 vertex_buffers: &[],
                 color_formats: &[],
                 samples: 1,
+                are_placed: false,
                 blending: Blending::Replace,
                 depth_format: None,
                 depth_write: false,
