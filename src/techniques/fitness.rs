@@ -98,6 +98,8 @@ mod tests {
     /// A GPU that has everything, changed.
     fn device(change: impl FnOnce(&mut Caps)) -> Caps {
         let mut caps = known::caps("amd-navi21").unwrap();
+        // It was not looked up there.
+        caps.sample_locations = known::caps("nvidia-h200").unwrap().sample_locations;
         change(&mut caps);
         caps
     }
