@@ -12,7 +12,8 @@ layout(location = 4) in vec4 color;
 layout(location = 5) in vec2 uv_1;
 #endif
 
-layout(location = 0) out vec3 out_position_ws;
+// xyz: place in the world; w: 1.
+layout(location = 0) out vec4 out_position_ws;
 layout(location = 1) out vec3 out_normal_ws;
 layout(location = 2) out vec4 out_tangent_ws;
 layout(location = 3) out vec2 out_uv;
@@ -27,7 +28,7 @@ layout(location = 6) out vec2 out_uv_1;
 vec4 write_attributes() {
     DrawBlock draw = draws[gl_InstanceIndex];
     vec4 position_ws = vertex_position_ws();
-    out_position_ws = position_ws.xyz;
+    out_position_ws = vec4(position_ws.xyz, 1.0);
     out_normal_ws = draw.normal_x.xyz * normal.x + draw.normal_y.xyz * normal.y + draw.normal_z.xyz * normal.z;
     // w carries the normal group's id too.
     out_tangent_ws = vec4(mat3(draw.world_from_object) * tangent.xyz, sign(tangent.w));

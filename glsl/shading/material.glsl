@@ -55,14 +55,29 @@ vec2 in_uv_1_down;
 
 #else
 
-layout(location = 0) INTERPOLATION in vec3 in_position_ws;
 layout(location = 1) INTERPOLATION in vec3 in_normal_ws;
 layout(location = 2) INTERPOLATION in vec4 in_tangent_ws;
-layout(location = 3) INTERPOLATION in vec2 in_uv;
 layout(location = 4) flat in uvec2 in_ids;
+#if defined(SHADED_SAMPLE) || defined(SHADED_PIXEL)
+// Elsewhere than in the middle lavapipe (of centroids and samples) and SwiftShader (of samples) divide by the depth in the middle, so
+// that positions lie off their triangles, behind what casts shadows. A corner's 1 comes out by the same factor.
+layout(location = 0) INTERPOLATION in vec4 in_position_and_one;
+layout(location = 3) INTERPOLATION in vec2 in_uv_by_one;
+#define in_position_ws (in_position_and_one.xyz / in_position_and_one.w)
+#define in_uv (in_uv_by_one / in_position_and_one.w)
 #ifdef VERTEX_EXTENDED
-layout(location = 5) INTERPOLATION in vec4 in_color;
-layout(location = 6) INTERPOLATION in vec2 in_uv_1;
+layout(location = 5) INTERPOLATION in vec4 in_color_by_one;
+layout(location = 6) INTERPOLATION in vec2 in_uv_1_by_one;
+#define in_color (in_color_by_one / in_position_and_one.w)
+#define in_uv_1 (in_uv_1_by_one / in_position_and_one.w)
+#endif
+#else
+layout(location = 0) in vec3 in_position_ws;
+layout(location = 3) in vec2 in_uv;
+#ifdef VERTEX_EXTENDED
+layout(location = 5) in vec4 in_color;
+layout(location = 6) in vec2 in_uv_1;
+#endif
 #endif
 
 #define in_material in_ids.x

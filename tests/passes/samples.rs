@@ -81,6 +81,27 @@ fn each_sample_is_shaded_at_its_place() {
     }
 }
 
+/// Where a floor or a wall recedes, what is shaded elsewhere than in the middle of a pixel lies on it still: a place behind it would see
+/// no light.
+#[test]
+fn samples_lie_on_their_triangles() {
+    let watched = Watched::open("hall:triangles=5000");
+    if !support::has(&watched.session.gpu.caps, Feature::SampleShading) {
+        return;
+    }
+    for shadows in ["ray", "map"] {
+        let shared = [("size", "161x97"), ("direct-shadow", shadows)];
+        let picture = |changes: Changes<'_>| watched.picture("forward", &both(&shared, changes));
+        let reference = picture(&[("supersample", "4")]);
+        for (changes, most) in [(&ONCE[..], 0.08), (&MANY, 0.05)] {
+            let flip =
+                metrics::compare(&picture(changes), &reference, metrics::DEFAULT_THRESHOLD).unwrap().metrics.flip;
+            println!("{shadows}, {changes:?}: FLIP {flip}");
+            assert!(flip < most, "{shadows}, {changes:?}: {flip}");
+        }
+    }
+}
+
 /// The square under a light near its middle.
 fn lit() -> Watched {
     let mut scene = square(matt(Vec4::ONE));
