@@ -1,6 +1,7 @@
 //! Pictures on a device that behaves as others may (tools/pretend): the same to the bit, or refused by name.
 
 mod rounding;
+mod samples;
 mod shaders;
 
 use crate::support::pretending::Layer;

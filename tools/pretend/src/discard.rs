@@ -29,7 +29,11 @@ pub unsafe extern "system" fn create_image(
         if MODES.discard {
             usage |= vk::ImageUsageFlags::TRANSFER_DST;
         }
-        let info = vk::ImageCreateInfo { usage, ..*info };
+        let mut flags = (*info).flags;
+        if MODES.placed_samples {
+            flags &= !vk::ImageCreateFlags::SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_EXT;
+        }
+        let info = vk::ImageCreateInfo { usage, flags, ..*info };
         let result = (table.next.fp_v1_0().create_image)(device, &info, allocator, image);
         if result == vk::Result::SUCCESS {
             table.known().formats.insert(*image, info.format);
@@ -150,7 +154,7 @@ fn is_dropped_buffer(barrier: &vk::BufferMemoryBarrier2<'_>) -> bool {
 /// # Safety
 ///
 /// As many as `count`, where that is not 0.
-unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
+pub unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
     match count {
         0 => &[],
         // SAFETY: the caller's promise.

@@ -1,7 +1,7 @@
 //! What a device has that Vulkan leaves optional.
 
 use crate::modes::MODES;
-use crate::tables;
+use crate::{samples, tables};
 use ash::vk;
 use std::ffi::c_char;
 
@@ -37,7 +37,7 @@ pub unsafe extern "system" fn features2(physical: vk::PhysicalDevice, features: 
     }
 }
 
-/// None, with the least that there may be.
+/// None, with the least that there may be; one more, where samples are placed.
 pub unsafe extern "system" fn extensions(
     physical: vk::PhysicalDevice,
     layer: *const c_char,
@@ -49,7 +49,24 @@ pub unsafe extern "system" fn extensions(
         unsafe { *count = 0 };
         return vk::Result::SUCCESS;
     }
-    let table = tables::of_physical(physical);
-    // SAFETY: the next layer's function with the program's arguments.
-    unsafe { (table.next.fp_v1_0().enumerate_device_extension_properties)(physical, layer, count, properties) }
+    let next = tables::of_physical(physical).next.fp_v1_0().enumerate_device_extension_properties;
+    // SAFETY: the next layer's function with the program's arguments, whose list has the length that it says.
+    unsafe {
+        if !MODES.placed_samples || !layer.is_null() {
+            return next(physical, layer, count, properties);
+        }
+        let room = *count;
+        if !properties.is_null() && room > 0 {
+            *count = room - 1;
+        }
+        let result = next(physical, layer, count, properties);
+        if !properties.is_null() {
+            if room == *count {
+                return vk::Result::INCOMPLETE;
+            }
+            *properties.add(*count as usize) = samples::extension();
+        }
+        *count += 1;
+        result
+    }
 }

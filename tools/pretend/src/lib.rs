@@ -13,6 +13,7 @@ mod modes;
 mod null;
 mod padding;
 mod rewrite;
+mod samples;
 mod shaders;
 mod statistics;
 mod tables;
@@ -62,6 +63,15 @@ fn of_devices(name: &[u8]) -> vk::PFN_vkVoidFunction {
         && let Some(made) = null::function(name)
     {
         return Some(made);
+    }
+    if modes::MODES.placed_samples {
+        match name {
+            b"vkCreateGraphicsPipelines" => {
+                return function!(samples::create_graphics_pipelines, vk::PFN_vkCreateGraphicsPipelines);
+            }
+            b"vkCmdSetSampleLocationsEXT" => return function!(samples::set, vk::PFN_vkCmdSetSampleLocationsEXT),
+            _ => {}
+        }
     }
     match name {
         b"vkGetDeviceProcAddr" => function!(get_device_proc_addr, vk::PFN_vkGetDeviceProcAddr),

@@ -1,7 +1,7 @@
 //! What a device says that it is and how far it goes.
 
 use crate::modes::MODES;
-use crate::tables;
+use crate::{samples, tables};
 use ash::vk;
 
 pub unsafe extern "system" fn properties(physical: vk::PhysicalDevice, properties: *mut vk::PhysicalDeviceProperties) {
@@ -22,6 +22,9 @@ pub unsafe extern "system" fn properties2(
     unsafe {
         (table.next.fp_v1_1().get_physical_device_properties2)(physical, properties);
         pretend(&mut (*properties).properties);
+        if MODES.placed_samples {
+            samples::describe((*properties).p_next as *mut vk::BaseOutStructure<'_>);
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! The chain of layers: instances and devices are made by the next one (vk_layer.h).
 
 use crate::modes::MODES;
-use crate::statistics;
 use crate::tables::{self, DeviceTable, InstanceTable, Known};
+use crate::{discard, samples, statistics};
 use ash::vk;
 use std::ffi::c_void;
 use std::sync::Mutex;
@@ -93,6 +93,11 @@ pub unsafe extern "system" fn create_device(
         }
         let p_enabled_features = features.as_ref().map_or(std::ptr::null(), |features| features as *const _);
         let info = vk::DeviceCreateInfo { p_enabled_features, ..*info };
+        let plain = samples::without_it(discard::slice(info.pp_enabled_extension_names, info.enabled_extension_count));
+        let info = match MODES.placed_samples {
+            true => info.enabled_extension_names(&plain),
+            false => info,
+        };
         let (mut names, mut feature) = Default::default();
         let info = match statistics::FILE.is_some() {
             true => statistics::with_statistics(&info, &mut names, &mut feature),

@@ -18,6 +18,8 @@ pub struct Modes {
     pub least_limits: bool,
     /// The driver has no hardware: it compiles, and what it lacks beside that is made up.
     pub null: bool,
+    /// The device has placed samples, four a pixel, which lie where Vulkan's standard has them.
+    pub placed_samples: bool,
     /// Products and sums of shaders become one operation where a compiler may do so; by this seed.
     pub contract: Option<u64>,
     /// Results of shaders that need not be exact are one unit in the last place off; by this seed.
@@ -47,8 +49,9 @@ pub static MODES: LazyLock<Modes> = LazyLock::new(|| {
             "gpu" => modes.gpu = true,
             "least-limits" => modes.least_limits = true,
             "null" => modes.null = true,
+            "placed-samples" => modes.placed_samples = true,
             _ => crate::fail(&format!(
-                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu, least-limits, \
+                "QUINCUNX_PRETEND={text}: {word}: there are poison, discard, padding, discrete, gpu, least-limits, placed-samples, \
                  contract=SEED and last-bit=SEED"
             )),
         }
