@@ -12,7 +12,7 @@ layout(location = 4) in vec4 color;
 layout(location = 5) in vec2 uv_1;
 #endif
 
-// xyz: place in the world; w: 1.
+// xyz: place in the world; w: 1, by which shading/material.glsl sees how a driver has interpolated.
 layout(location = 0) out vec4 out_position_ws;
 layout(location = 1) out vec3 out_normal_ws;
 layout(location = 2) out vec4 out_tangent_ws;

@@ -407,11 +407,6 @@ impl Gpu {
         self.validation.as_ref().map(|validation| validation.log.clone())
     }
 
-    /// The greatest image of this description that the device makes, in bytes; 0 where it makes none.
-    pub(super) fn greatest_image_bytes(&self, info: &vk::ImageCreateInfo<'_>) -> u64 {
-        self.image_properties(info).map_or(0, |properties| properties.max_resource_size)
-    }
-
     /// Whether the driver does with linear images of a format all that it does with optimal ones.
     pub(super) fn is_as_able_linear(&self, format: vk::Format) -> bool {
         // SAFETY: as in `image_properties`.

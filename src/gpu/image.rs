@@ -149,9 +149,10 @@ impl ImageDescription {
         Ok(())
     }
 
-    /// The most bytes that the driver lets such an image have, whatever its extent.
+    /// The most bytes that the driver lets such an image have, whatever its extent; 0 where it makes none.
     pub fn greatest_bytes(&self, gpu: &Gpu) -> u64 {
-        gpu.greatest_image_bytes(&self.create_info(self.tiling(gpu)))
+        let most = gpu.image_properties(&self.create_info(self.tiling(gpu)));
+        most.map_or(0, |most| most.max_resource_size)
     }
 
     /// What the driver requires of memory for such an image, without making one.

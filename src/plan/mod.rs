@@ -114,9 +114,9 @@ impl Plan {
 
     /// Samples of this depth buffer lie where commands place them.
     pub fn place_samples(&mut self, name: &str) {
-        let index = self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"));
-        if let Shape::Image(description) = &mut self.resources[index].shape {
-            description.are_placed = true;
+        match &mut self.named(name).shape {
+            Shape::Image(description) => description.are_placed = true,
+            Shape::Buffer { .. } => panic!("{name} is no image"),
         }
     }
 
@@ -150,8 +150,13 @@ impl Plan {
 
     /// What a run leaves in the resource of this name, passes of the next one need: its bytes are its own. The plan has it.
     pub fn keep(&mut self, name: &str) {
+        self.named(name).is_kept = true;
+    }
+
+    /// A name that the plan does not have is a programmer's mistake.
+    fn named(&mut self, name: &str) -> &mut Planned {
         let index = self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"));
-        self.resources[index].is_kept = true;
+        &mut self.resources[index]
     }
 
     fn index(&self, name: &str) -> Option<usize> {

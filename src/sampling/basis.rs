@@ -55,6 +55,11 @@ impl Basis {
         Self { is_in_sixteenths: true, ..self }
     }
 
+    /// Whether it is such a basis.
+    pub fn is_in_sixteenths(&self) -> bool {
+        self.is_in_sixteenths
+    }
+
     /// Number of samples of one basis.
     pub fn member_count(&self) -> u32 {
         self.points.len() as u32

@@ -1,6 +1,6 @@
 //! `--msaa` with `--sample-shading`: where a surface is shaded, and how often; with `--sample-format`: what samples hold.
 
-use crate::support::square::{matt, square};
+use crate::support::square::{FOUR_PLACES, matt, square};
 use crate::support::watched::{Changes, Watched, both};
 use crate::support::{self, Feature};
 use glam::{Vec2, Vec3, Vec4};
@@ -12,9 +12,6 @@ const MANY: [(&str, &str); 2] = [("msaa", "4"), ("sample-shading", "on")];
 const ONCE: [(&str, &str); 1] = [("msaa", "4")];
 const EXTENT: (usize, usize) = (8, 8);
 const SIZE: (&str, &str) = ("size", "8x8");
-/// Vulkan's standard places of 4 samples, parts of a pixel.
-const PLACES: [Vec2; 4] =
-    [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
 const MIDDLE: Vec2 = Vec2::splat(0.5);
 const CUTOFF: f32 = 0.5;
 
@@ -57,11 +54,11 @@ fn each_sample_is_shaded_at_its_place() {
         if !support::has(&watched.session.gpu.caps, Feature::SampleShading) {
             return;
         }
-        let apart = expected(alpha, &PLACES);
+        let apart = expected(alpha, &FOUR_PLACES);
         assert!(apart.iter().zip(expected(alpha, &[MIDDLE])).any(|(a, b)| (a - b).abs() > 0.0005), "{alpha:?}");
         for technique in TECHNIQUES {
             for prepass in ["on", "off"] {
-                for (samples, places) in [(&MANY[..], &PLACES[..]), (&ONCE, &[MIDDLE])] {
+                for (samples, places) in [(&MANY[..], &FOUR_PLACES[..]), (&ONCE, &[MIDDLE])] {
                     let changes = both(&[SIZE, ("depth-prepass", prepass)], samples);
                     let picture = watched.picture(technique, &changes);
                     for (index, (found, expected)) in picture.pixels.iter().zip(expected(alpha, places)).enumerate() {
@@ -143,7 +140,7 @@ fn the_light_buffer_is_read_at_each_sample_s_place() {
     }
     let common = [SIZE, ("light-size", "5x5"), ("brdf", "lambert"), ("l-buffer", "float")];
     let stage = "light.l_buffer.irradiance";
-    for (samples, places) in [(&MANY[..], &PLACES[..]), (&ONCE, &[MIDDLE])] {
+    for (samples, places) in [(&MANY[..], &FOUR_PLACES[..]), (&ONCE, &[MIDDLE])] {
         let renderer = watched.render_stages("inferred_lighting", &both(&common, samples), &[stage]);
         let light = watched.rgb(&renderer, stage);
         // The AOV shows each texel at the pixels whose middles it holds.
@@ -170,7 +167,7 @@ fn the_light_buffer_is_read_at_each_sample_s_place() {
             }
             let pixel = Vec2::new(x as f32, y as f32);
             let expected = mean(pixel, places);
-            most_apart = most_apart.max((mean(pixel, &PLACES) / mean(pixel, &[MIDDLE]) - 1.0).abs());
+            most_apart = most_apart.max((mean(pixel, &FOUR_PLACES) / mean(pixel, &[MIDDLE]) - 1.0).abs());
             assert!((found[0] / expected - 1.0).abs() < 1e-4, "{samples:?}, pixel {x} {y}: {found:?} for {expected}");
         }
         assert!(most_apart > 0.01, "{most_apart}: too little to tell one from the other");

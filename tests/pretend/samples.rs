@@ -4,6 +4,7 @@
 use crate::support::gltf_file::GltfFile;
 use crate::support::pretending::Layer;
 use crate::support::program::Program;
+use crate::support::square::FOUR_PLACES;
 use quincunx::picture::image_file;
 use quincunx::techniques::patterns;
 use serde_json::json;
@@ -11,8 +12,6 @@ use std::path::Path;
 
 /// Square as what is drawn, and no whole number of bases.
 const SIZE: [u32; 2] = [11, 11];
-/// Vulkan's standard places of 4 samples, parts of a pixel.
-const PLACES: [[f32; 2]; 4] = [[0.375, 0.125], [0.875, 0.375], [0.125, 0.625], [0.625, 0.875]];
 
 /// What is sent at a place of the picture, parts of it.
 fn grey_at(place: [f32; 2]) -> f32 {
@@ -58,7 +57,7 @@ fn samples_of_the_device_are_members_in_their_pixels() {
                 let pixel = [index % SIZE[0], index / SIZE[0]];
                 let own = pattern.samples_of(pixel);
                 let sent = own.iter().map(|sample| {
-                    let place = PLACES[sample.subset as usize % 4];
+                    let place = FOUR_PLACES[sample.subset as usize % 4];
                     grey_at([0, 1].map(|axis| (pixel[axis] as f32 + place[axis]) / SIZE[axis] as f32))
                 });
                 let expected = sent.sum::<f32>() / own.len() as f32;

@@ -3,6 +3,10 @@
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use quincunx::scene::{Camera, ColorSpace, Draw, Image, Material, Mesh, Projection, Sampler, Scene, Texture, Wrap};
 
+/// Vulkan's standard places of 4 samples, parts of a pixel.
+pub const FOUR_PLACES: [Vec2; 4] =
+    [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
+
 /// Faces the camera and fills the picture; coordinates run from the picture's upper left corner.
 pub fn square(material: Material) -> Scene {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];

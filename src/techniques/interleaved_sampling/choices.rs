@@ -206,7 +206,6 @@ fn members(values: &Values, frame: Extent, caps: &Caps) -> Result<Members> {
 pub struct Choices {
     pub drawing: ForwardChoices,
     pub members: Members,
-    pub places: PixelPlaces,
     pub lens: Option<Lens>,
     /// With `--effect motion`, where something moves.
     pub exposure: Option<Exposure>,
@@ -249,7 +248,6 @@ impl Choices {
         };
         let mut choices = Self {
             members,
-            places: pixel_places(values)?,
             lens,
             drawing: ForwardChoices::new(
                 NAME,
@@ -279,6 +277,11 @@ impl Choices {
     /// Whether members see the scene or its lights otherwise, and not only from elsewhere.
     pub fn changes(&self) -> bool {
         self.exposure.is_some() || self.soft.is_some()
+    }
+
+    /// Where in their pixels samples may lie.
+    pub fn places(&self) -> PixelPlaces {
+        if self.members.basis().is_in_sixteenths() { PixelPlaces::Sixteenths } else { PixelPlaces::Free }
     }
 
     /// Lights of a member.

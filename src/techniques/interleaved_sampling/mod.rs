@@ -175,7 +175,7 @@ impl Prepared for PreparedInterleaved {
     }
 
     fn stages_left_out(&self, _: &Inputs<'_>) -> Vec<(&'static str, String)> {
-        let are_placed = self.choices.members.drawing() == Drawing::SampleLocations;
+        let are_placed = self.choices.drawing.samples.are_placed;
         let why =
             "with --members sample-locations several members are drawn at once; --members tuples draws each alone";
         Vec::from_iter(are_placed.then(|| (aov::MEMBER, why.to_owned())))
@@ -183,7 +183,7 @@ impl Prepared for PreparedInterleaved {
 
     fn resolved(&self) -> BTreeMap<&'static str, String> {
         let lens = self.choices.lens.map(|lens| ("focus", lens.focus.to_string()));
-        let places = ("places", self.choices.places.name().to_owned());
+        let places = ("places", self.choices.places().name().to_owned());
         self.choices.drawing.resolved().into_iter().chain(lens).chain([places]).collect()
     }
 
@@ -298,7 +298,7 @@ impl Frame for InterleavedFrame {
 
     /// Where samples lie is a command's to say.
     fn records_each_run(&self) -> bool {
-        self.choices.members.drawing() == Drawing::SampleLocations
+        self.choices.drawing.samples.are_placed
     }
 
     /// Pixels without a sample of the first members have none to show.

@@ -48,7 +48,6 @@ pub unsafe fn without_it(names: &[*const c_char]) -> Vec<*const c_char> {
     names.iter().copied().filter(|name| !is_it(name)).collect()
 }
 
-/// Pipelines whose samples are placed lose that, and must let commands place them.
 pub unsafe extern "system" fn create_graphics_pipelines(
     device: vk::Device,
     cache: vk::PipelineCache,
@@ -58,42 +57,44 @@ pub unsafe extern "system" fn create_graphics_pipelines(
     pipelines: *mut vk::Pipeline,
 ) -> vk::Result {
     let next = tables::device(device).next.fp_v1_0().create_graphics_pipelines;
-    // SAFETY: the program's structs, of the kinds that Vulkan has there; their copies live as long as the calls.
+    // SAFETY: the program's structs, and its places for as many pipelines; the next layer's function.
     unsafe {
         for (index, info) in slice(infos, count).iter().enumerate() {
-            let into = pipelines.add(index);
-            let placed = (*info.p_multisample_state).p_next as *const vk::BaseInStructure<'_>;
-            let result = if placed.is_null() {
-                next(device, cache, 1, info, allocator, into)
-            } else {
-                let state = placed.cast::<vk::PipelineSampleLocationsStateCreateInfoEXT<'_>>();
-                let dynamic =
-                    slice((*info.p_dynamic_state).p_dynamic_states, (*info.p_dynamic_state).dynamic_state_count);
-                let is_set = |state: &&vk::DynamicState| **state == vk::DynamicState::SAMPLE_LOCATIONS_EXT;
-                let is_right = (*placed).s_type == vk::StructureType::PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT
-                    && (*state).sample_locations_enable == vk::TRUE
-                    && (*info.p_multisample_state).rasterization_samples == COUNT
-                    && dynamic.iter().any(|state| is_set(&state));
-                if !is_right {
-                    crate::fail("a pipeline's samples are placed otherwise than four of them by commands");
-                }
-                let kept: Vec<vk::DynamicState> = dynamic.iter().filter(|state| !is_set(state)).copied().collect();
-                let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&kept);
-                let multisample =
-                    vk::PipelineMultisampleStateCreateInfo { p_next: std::ptr::null(), ..*info.p_multisample_state };
-                let plain = vk::GraphicsPipelineCreateInfo {
-                    p_multisample_state: &multisample,
-                    p_dynamic_state: &dynamic,
-                    ..*info
-                };
-                next(device, cache, 1, &plain, allocator, into)
-            };
+            let result = without_places(info, |info| next(device, cache, 1, info, allocator, pipelines.add(index)));
             if result != vk::Result::SUCCESS {
                 return result;
             }
         }
     }
     vk::Result::SUCCESS
+}
+
+/// Hands `make` a pipeline whose samples are not placed. One whose samples are must have four, and let commands place them.
+///
+/// SAFETY: the program's struct, with what it points to.
+unsafe fn without_places(
+    info: &vk::GraphicsPipelineCreateInfo<'_>,
+    make: impl FnOnce(*const vk::GraphicsPipelineCreateInfo<'_>) -> vk::Result,
+) -> vk::Result {
+    // SAFETY: the caller's promise; this program chains nothing else there.
+    let (samples, states, placed) = unsafe {
+        let (samples, dynamic) = (&*info.p_multisample_state, &*info.p_dynamic_state);
+        let placed = samples.p_next.cast::<vk::PipelineSampleLocationsStateCreateInfoEXT<'_>>();
+        (samples, slice(dynamic.p_dynamic_states, dynamic.dynamic_state_count), placed.as_ref())
+    };
+    let Some(placed) = placed else { return make(info) };
+    let kept: Vec<vk::DynamicState> =
+        states.iter().filter(|state| **state != vk::DynamicState::SAMPLE_LOCATIONS_EXT).copied().collect();
+    let is_right = placed.s_type == vk::StructureType::PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT
+        && placed.sample_locations_enable == vk::TRUE
+        && samples.rasterization_samples == COUNT
+        && kept.len() + 1 == states.len();
+    if !is_right {
+        crate::fail("a pipeline's samples are placed otherwise than four of them by commands");
+    }
+    let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&kept);
+    let multisample = vk::PipelineMultisampleStateCreateInfo { p_next: std::ptr::null(), ..*samples };
+    make(&vk::GraphicsPipelineCreateInfo { p_multisample_state: &multisample, p_dynamic_state: &dynamic, ..*info })
 }
 
 /// Four places, each at a sixteenth of a pixel.
