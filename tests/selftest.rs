@@ -11,6 +11,7 @@ use ash::vk;
 use quincunx::gpu::DeviceRequest;
 use quincunx::gpu::request::DeviceHook;
 use quincunx::selftest::{self, Outcome, Request, Verdict, document};
+use quincunx::techniques;
 use std::ffi::{CStr, c_void};
 use std::mem::transmute;
 use std::sync::OnceLock;
@@ -114,6 +115,16 @@ fn an_interrupted_self_test_ends_with_130_and_writes_nothing() {
     assert_eq!(code, Some(130), "{said}");
     assert!(said.starts_with("error: interrupted"), "{said}");
     assert_eq!(program.files(), [] as [&str; 0]);
+}
+
+/// It is the first thing to run on a device: a case that no device can hold must not wait there.
+#[test]
+fn every_case_holds_here_or_is_refused() {
+    let names: Vec<&str> = techniques::ALL.iter().map(|technique| technique.name()).collect();
+    let outcome = tried(DeviceRequest::default(), &names);
+    let failed = outcome.tried.iter().filter(|case| matches!(case.verdict, Verdict::Failed(_)));
+    let lines: String = failed.map(document::line).collect();
+    assert!(outcome.failed().is_empty() && outcome.tried.len() > 300, "{} tried\n{lines}", outcome.tried.len());
 }
 
 /// Shading space stays empty: where fragments shade the picture of the lists is none, and that of entries is as it was.

@@ -226,7 +226,16 @@ pub const GROUPS: &[Group] = &[
         place: FENCE,
         common: &[VPLS, ("accumulate", "3")],
         twin: Twin::Method(&[("light-lists", "none"), ("split", "branch")]),
-        methods: &[&[], &[("split", "stencil")], &[("position", "float"), ("split", "tile")]],
+        methods: &[&[], &[("split", "stencil")], &[("split", "tile")]],
+        must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "accumulate-float",
+        technique: NAME,
+        place: FENCE,
+        common: &[VPLS, ("accumulate", "3"), ("position", "float")],
+        twin: Twin::Method(&[("light-lists", "none"), ("split", "branch")]),
+        methods: &[&[("split", "tile")]],
         must: Must::Equal(ROUNDING),
     },
     Group {
