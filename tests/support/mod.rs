@@ -17,7 +17,7 @@ pub mod square;
 pub mod touched;
 pub mod watched;
 
-use quincunx::caps::{Caps, known};
+use quincunx::caps::{Ability, Caps, known};
 use quincunx::gpu::{DeviceRequest, Gpu};
 use std::io::Write;
 use std::path::PathBuf;
@@ -112,6 +112,8 @@ pub enum Feature {
     SampleShading,
     /// Pairs of 16-bit fractions are blended.
     BlendFixedPairs,
+    /// A sample's place in its pixel is the program's to say.
+    SampleLocations,
 }
 
 impl Feature {
@@ -126,6 +128,7 @@ impl Feature {
             Self::PreciseOcclusion => caps.features.occlusion_query_precise,
             Self::SampleShading => caps.features.sample_rate_shading,
             Self::BlendFixedPairs => caps.formats.fixed_pair_blend,
+            Self::SampleLocations => Ability::SampleLocations.is_there(caps),
         }
     }
 
@@ -140,7 +143,7 @@ impl Feature {
             | Self::PreciseOcclusion
             | Self::SampleShading
             | Self::BlendFixedPairs => true,
-            Self::RayQuery => false,
+            Self::RayQuery | Self::SampleLocations => false,
         }
     }
 
@@ -158,6 +161,7 @@ impl Feature {
             Self::PreciseOcclusion => "occlusionQueryPrecise".to_owned(),
             Self::SampleShading => "sampleRateShading".to_owned(),
             Self::BlendFixedPairs => "R16G16_UNORM as blended colour attachment".to_owned(),
+            Self::SampleLocations => Ability::SampleLocations.name().to_owned(),
         }
     }
 }

@@ -4,9 +4,8 @@ use super::NAME;
 use crate::support::difference::{require_same, rmse};
 use crate::support::moving::moving;
 use crate::support::program::Program;
-use crate::support::skip;
 use crate::support::watched::{Watched, both};
-use quincunx::caps::Ability;
+use crate::support::{Feature, has};
 use quincunx::volume::{self, VolumeRequest};
 use serde_json::json;
 use std::sync::Arc;
@@ -79,8 +78,8 @@ fn samples_of_the_device_are_members_that_are_drawn_alone() {
         ("fence", [("basis", "3x2"), ("samples", "0.5"), ("direct-shadow", "sun"), ("depth-prepass", "on")]),
     ] {
         let watched = Watched::open(scene);
-        if !Ability::SampleLocations.is_there(&watched.session.gpu.caps) {
-            return skip(Ability::SampleLocations.name());
+        if !has(&watched.session.gpu.caps, Feature::SampleLocations) {
+            return;
         }
         let shared = both(&changes, &[("size", "61x47"), ("places", "sixteenths")]);
         let picture = |members| watched.picture(NAME, &both(&shared, &[("members", members)]));
