@@ -1,6 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::listed::TechniqueSelection;
+use super::listed::{self, Asked};
 use super::output;
 use super::{
     bench_allocate, bench_device, bench_file, bench_merge, frames_args, job_args, locality, progress, rays,
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The verb with its arguments.
-pub fn command(listed: &TechniqueSelection) -> Command {
+pub fn command(asked: &Asked) -> Command {
     Command::new("bench")
         .about("Measure settings against each other: a frame, or one stage of it")
         .after_help(format!(
@@ -42,7 +42,7 @@ pub fn command(listed: &TechniqueSelection) -> Command {
         .subcommands(
             What::all()
                 .into_iter()
-                .map(|what| reference_args::with_reference_args(job_args::with_job_args(listed, sub_command(what)))),
+                .map(|what| reference_args::with_reference_args(job_args::with_job_args(asked, sub_command(what)))),
         )
         .subcommand(rays::command())
         .subcommand(locality::command())
@@ -210,7 +210,7 @@ fn run_file(matches: &ArgMatches) -> Result<()> {
     for words in bench_file::commands(matches)? {
         let argv: Vec<String> = std::iter::once("quincunx".to_owned()).chain(words.iter().cloned()).collect();
         say(command_line(&argv));
-        let parsed = command(&TechniqueSelection::All).try_get_matches_from(&words);
+        let parsed = command(&Asked::by(&words)).try_get_matches_from(&words);
         let parsed = parsed.map_err(|error| {
             // What clap says of usage is of a command that nobody typed.
             let text = error.to_string();
@@ -234,9 +234,8 @@ pub(super) fn require_known(flag: &str, key: &str) -> Result<()> {
     }
     let error = Error::request(format!("--{flag} {key}=: there is no setting --{key}"));
     // The parser itself says what a flag resembles.
-    let refused = command(&TechniqueSelection::All)
-        .try_get_matches_from(["bench", What::Frame.name(), &format!("--{key}")])
-        .err();
+    let words = ["bench", What::Frame.name(), "--technique", listed::ALL, &format!("--{key}")].map(str::to_owned);
+    let refused = command(&Asked::by(&words)).try_get_matches_from(&words).err();
     let similar = refused.as_ref().and_then(|refused| refused.get(ContextKind::SuggestedArg));
     Err(match similar {
         Some(ContextValue::String(similar)) => error.note(format!("a similar one exists: {similar}")),

@@ -1,6 +1,6 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
-use super::listed::{self, TechniqueSelection};
+use super::listed::{self, Asked, TechniqueSelection};
 use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::job::Job;
@@ -12,11 +12,12 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
 
-/// Adds SCENE, --technique, --device, --validate and every setting; help lists those of the techniques in `listed`.
-pub fn with_job_args(listed: &TechniqueSelection, command: Command) -> Command {
+/// Adds SCENE, --technique, --device, --validate and, where they are asked for, every setting; help lists those of the
+/// techniques that `asked` names.
+pub fn with_job_args(asked: &Asked, command: Command) -> Command {
     let names = techniques::ALL.iter().map(|technique| PossibleValue::new(technique.name()));
     let mut command = command
-        .after_help(listed.after_help())
+        .after_help(asked.listed.after_help())
         .arg(Arg::new("scene").value_name("SCENE").help(
             "A built-in scene (`quincunx scene list`), with parameters as in hall:triangles=80000, or a .gltf or .glb \
              file; default: the scene that shows the technique best",
@@ -55,7 +56,10 @@ pub fn with_job_args(listed: &TechniqueSelection, command: Command) -> Command {
                 .action(ArgAction::SetTrue)
                 .help("Print the results as JSON on standard output"),
         );
-    for Row { setting, heading, is_listed } in rows(listed) {
+    if !asked.has_settings_of(&command) {
+        return command;
+    }
+    for Row { setting, heading, is_listed } in rows(&asked.listed) {
         command = command.arg(flag(setting).help_heading(heading).hide(!is_listed));
     }
     command

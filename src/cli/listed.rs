@@ -1,11 +1,41 @@
-//! Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the
-//! default one. The other flags are there all the same, so that a technique can say what it does not read.
+//! What a command line asks for, as far as it must be known before it is parsed: which verbs need their settings, and whose
+//! settings help lists.
 
 use crate::techniques::{self, DEFAULT_TECHNIQUE, Technique};
+use clap::Command;
+use std::collections::HashSet;
 
 /// What `--technique` takes beside names, for help alone.
 pub const ALL: &str = "all";
 
+/// What is made of all flags, and which of them help lists.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    pub listed: TechniqueSelection,
+    /// None: whatever there is.
+    words: Option<HashSet<String>>,
+}
+
+impl Asked {
+    /// Everything.
+    pub fn all() -> Self {
+        Self { listed: TechniqueSelection::All, words: None }
+    }
+
+    /// What this command line can read or list.
+    pub fn by(argv: &[String]) -> Self {
+        Self { listed: TechniqueSelection::of(argv), words: Some(argv.iter().cloned().collect()) }
+    }
+
+    /// Whether the settings of this verb can be read or listed. A dozen verbs take hundreds: to make all of them would be most of
+    /// what a short command does.
+    pub fn has_settings_of(&self, verb: &Command) -> bool {
+        self.words.as_ref().is_none_or(|words| words.contains(verb.get_name()))
+    }
+}
+
+/// Whose settings help lists: those of the techniques that the command names, of all with `--technique all`, or of the
+/// default one. The other flags are there all the same, so that a technique can say what it does not read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TechniqueSelection {
     All,
@@ -45,7 +75,7 @@ impl TechniqueSelection {
                 let others: Vec<&str> =
                     all.into_iter().filter(|name| names.iter().all(|listed| listed != name)).collect();
                 format!(
-                    "TechniqueSelection are the common settings and those of {}. --technique NAME --help lists those of another ({}), \
+                    "Listed are the common settings and those of {}. --technique NAME --help lists those of another ({}), \
                      --technique {ALL} --help all of them. A number after a paper and its year is a section of it.",
                     names.join(", "),
                     others.join(", ")

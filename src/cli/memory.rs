@@ -2,7 +2,7 @@
 //! two of them differ in; and the smallest budget.
 
 use super::job_args;
-use super::listed::TechniqueSelection;
+use super::listed::Asked;
 use crate::caps::{file, known};
 use crate::cli::output::{folder_flag, print, print_text};
 use crate::error::{Error, Result};
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 const UNROUNDED: &str = "how this driver rounds sizes has not been measured: it takes these bytes, or more\n";
 
 /// The verb with its arguments.
-pub fn command(listed: &TechniqueSelection) -> Command {
+pub fn command(asked: &Asked) -> Command {
     let command = Command::new("memory")
         .about("Print the memory that a technique needs: each resource with its bytes, memory type and lifetime, and the peak")
         .arg(
@@ -62,7 +62,7 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 .conflicts_with("memory-budget")
                 .help("Find a --memory-budget that is enough while a mebibyte less is not, and what is given up for it"),
         );
-    job_args::with_job_args(listed, command).mut_arg("technique", |technique| {
+    job_args::with_job_args(asked, command).mut_arg("technique", |technique| {
         technique
             .action(ArgAction::Append)
             .help("Technique to plan; may be repeated; each setting must be read by one of them; with --help: list their settings")

@@ -30,10 +30,10 @@ pub mod tune;
 
 use crate::error::Result;
 use clap::Command;
-use listed::TechniqueSelection;
+use listed::Asked;
 
-/// The program with its verbs. `listed`: whose settings help lists.
-fn command(listed: &TechniqueSelection) -> Command {
+/// The program with its verbs, and with the settings of those that are asked for.
+fn command(asked: &Asked) -> Command {
     Command::new("quincunx")
         .version(concat!(env!("CARGO_PKG_VERSION"), " (", env!("QUINCUNX_COMMIT"), ")"))
         .about("A headless Vulkan renderer: interleaved, inferred and decoupled shading side by side")
@@ -45,12 +45,12 @@ fn command(listed: &TechniqueSelection) -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands([
-            render::command(listed),
+            render::command(asked),
             compare::command(),
-            bench::command(listed),
-            reproduce::command(),
-            tune::command(listed),
-            memory::command(listed),
+            bench::command(asked),
+            reproduce::command(asked),
+            tune::command(asked),
+            memory::command(asked),
             scene::command(),
             sampling::command(),
             devices::command(),
@@ -62,7 +62,7 @@ fn command(listed: &TechniqueSelection) -> Command {
 
 /// Runs the verb of `argv`.
 pub fn run(argv: &[String]) -> Result<()> {
-    let matches = match command(&TechniqueSelection::of(argv)).try_get_matches_from(argv) {
+    let matches = match command(&Asked::by(argv)).try_get_matches_from(argv) {
         Ok(matches) => matches,
         // clap prints help to standard output, and its own words for what it cannot parse; exit code 2 for the latter.
         Err(error) => error.exit(),
@@ -78,8 +78,8 @@ pub fn run(argv: &[String]) -> Result<()> {
         Some(("sampling", matches)) => sampling::run(matches),
         Some(("devices", matches)) => devices::run(matches, argv),
         Some(("settings", matches)) => settings::run(matches),
-        Some(("completions", matches)) => completions::run(matches, command(&TechniqueSelection::All)),
-        Some(("man", matches)) => man::run(matches, command(&TechniqueSelection::All)),
+        Some(("completions", matches)) => completions::run(matches, command(&Asked::all())),
+        Some(("man", matches)) => man::run(matches, command(&Asked::all())),
         _ => unreachable!("clap requires one of the verbs"),
     }
 }

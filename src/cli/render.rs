@@ -1,6 +1,6 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::listed::TechniqueSelection;
+use super::listed::Asked;
 use super::{frames_args, job_args, progress, reference_args};
 use crate::cli::output::{print, print_text};
 use crate::continuation::Continuation;
@@ -19,12 +19,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The verb with its arguments.
-pub fn command(listed: &TechniqueSelection) -> Command {
+pub fn command(asked: &Asked) -> Command {
     let path = |name: &'static str, value: &'static str| {
         Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf))
     };
     let command = job_args::with_job_args(
-        listed,
+        asked,
         Command::new("render")
             .about("Render a scene")
             .arg(

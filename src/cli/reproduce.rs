@@ -1,7 +1,7 @@
 //! `quincunx reproduce PAPER/ITEM`: a published table or figure made again, the paper's numbers beside ours.
 
 use super::job_args::{Row, flag, rows};
-use super::listed::TechniqueSelection;
+use super::listed::{Asked, TechniqueSelection};
 use super::output::{bare_repeat_flag, folder_flag, print, print_text, quiet_flag};
 use super::progress;
 use crate::error::{Error, Result};
@@ -19,7 +19,7 @@ const LIST: &str = "list";
 const ALL: &str = "all";
 
 /// The verb with its arguments.
-pub fn command() -> Command {
+pub fn command(asked: &Asked) -> Command {
     let flag_of =
         |name: &'static str, help: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue).help(help);
     let command = Command::new("reproduce")
@@ -72,6 +72,9 @@ pub fn command() -> Command {
         .arg(Arg::new("device").long("device").value_name("SUBSTRING|INDEX").help("Device, as of render"))
         .arg(quiet_flag())
         .arg(flag_of("json", "Print the results, or the list, as one JSON document"));
+    if !asked.has_settings_of(&command) {
+        return command;
+    }
     rows(&TechniqueSelection::All)
         .into_iter()
         .fold(command, |command, Row { setting, .. }| command.arg(flag(setting).hide(true)))
@@ -224,7 +227,6 @@ mod tests {
             is_fresh: false,
             is_quiet: true,
         };
-        let parser = crate::cli::command(&TechniqueSelection::All);
         let (mut wrong, mut scenes, mut seen) = (Vec::new(), HashSet::new(), HashSet::new());
         for (paper, item) in papers::all() {
             let Some(recipe) = item.recipe else { continue };
@@ -237,7 +239,7 @@ mod tests {
                     }
                     let words = step.command(&Request { effort, ..request.clone() });
                     let argv: Vec<String> = ["quincunx".to_owned()].into_iter().chain(words).collect();
-                    let checked = match parser.clone().try_get_matches_from(&argv) {
+                    let checked = match crate::cli::command(&Asked::by(&argv)).try_get_matches_from(&argv) {
                         Ok(matches) => check(&matches, &argv, &mut scenes),
                         Err(error) => Err(Error::request(error.to_string())),
                     };

@@ -1,6 +1,6 @@
 //! `quincunx tune`: settings for this device, found by measuring them under a bound on the error and on the time.
 
-use super::listed::TechniqueSelection;
+use super::listed::Asked;
 use super::output::{self, print_text};
 use super::{job_args, progress, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};
@@ -24,7 +24,7 @@ use std::time::Duration;
 const PRESET: &str = "preset.toml";
 
 /// The verb with its arguments.
-pub fn command(listed: &TechniqueSelection) -> Command {
+pub fn command(asked: &Asked) -> Command {
     let command = Command::new("tune")
         .about("Find the fastest settings on this device whose picture is near enough, and write them as a preset")
         .arg(
@@ -67,7 +67,7 @@ pub fn command(listed: &TechniqueSelection) -> Command {
                 .requires("output")
                 .help("Replace what is there"),
         );
-    reference_args::with_bare_reference_args(job_args::with_job_args(listed, command))
+    reference_args::with_bare_reference_args(job_args::with_job_args(asked, command))
 }
 
 /// Metrics that are smaller where pictures are nearer.
