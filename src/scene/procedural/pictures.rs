@@ -93,13 +93,13 @@ pub fn noise([u, v]: [f32; 2], cells: [u32; 2], seed: u32) -> f32 {
     mix(along(top), along(bottom), t)
 }
 
-/// The cell of `count` that `at` lies in and the next one, and how far it lies in it, smoothly. A division a cell and no call for
-/// the whole part: most of the time of a scene that is made goes here.
+/// The cell of `count` that `at` lies in and the next one, and how far it lies in it, smoothly. No call for the whole part, and a
+/// division only outside 0 to 1: most of the time of a scene that is made goes here.
 #[inline]
 fn cell_of(at: f32, count: u32) -> ([u32; 2], f32) {
     let cut = at as i32;
     let whole = cut - i32::from(cut as f32 > at);
-    let cell = whole.rem_euclid(count as i32) as u32;
+    let cell = if (0..count as i32).contains(&whole) { whole as u32 } else { whole.rem_euclid(count as i32) as u32 };
     let next = if cell + 1 == count { 0 } else { cell + 1 };
     ([cell, next], step(0.0, 1.0, at - whole as f32))
 }
