@@ -99,7 +99,7 @@ pub fn mean(picture: &Picture) -> f32 {
 fn every_choice_of_components_has_the_light_of_its_paths() {
     let watched = Watched::with_scene(shelf());
     let shared = [("size", "64x48"), ("emissive", "on"), TEXT];
-    let paths = [("brdf", "lambert"), ("ambient-visibility", "off"), ("spp", "512")];
+    let paths = [("brdf", "lambert"), ("ambient-visibility", "off"), ("spp", "256")];
     let one_bounce = ("transport", "one-bounce");
     let cases = [
         ("ss", [("transport", "direct"), ("airlight", "none"), ("direct-light", "on")]),

@@ -132,7 +132,7 @@ fn effects_converge_to_paths() {
         let shared = [("size", "48x36"), ("background", "0"), ("brdf", "lambert")];
         let changes = both(&shared, changes);
         let paths =
-            [("transport", "direct"), ("light-visibility", "on"), ("spp", "512"), ("ambient-visibility", "off")];
+            [("transport", "direct"), ("light-visibility", "on"), ("spp", "256"), ("ambient-visibility", "off")];
         let paths = both(&both(&changes, of_paths), &paths);
         let paths: Vec<_> = paths.into_iter().filter(|(key, _)| *key != "direct-shadow").collect();
         let reference = cut(watched.picture("path_traced", &paths));

@@ -242,11 +242,13 @@ fn direct_light_is_deferred_shading_s() {
     if !support::has(&support::driver(), Feature::ExactPositions) {
         return;
     }
-    for (scene, bound) in [("cornell", 0.02), ("lamps:objects=30,lights=20", 0.05), ("hall:triangles=8000", 0.2)] {
+    for (scene, spp, bound) in
+        [("cornell", "1024", 0.02), ("lamps:objects=30,lights=20", "512", 0.05), ("hall:triangles=8000", "256", 0.2)]
+    {
         let watched = Watched::with_scene(plain(scene));
         let changes: Changes<'_> = &[("size", "512x288"), ("direct-shadow", "ray"), ("position", "float")];
         let expected = reduced(&watched.picture("deferred", changes), 8);
-        let found = watched.picture(NAME, &[("size", "64x36"), ("spp", "1024"), ("transport", "direct")]);
+        let found = watched.picture(NAME, &[("size", "64x36"), ("spp", spp), ("transport", "direct")]);
         let error = relative_rmse(&found, &expected);
         println!("{scene}: relative RMSE {error:.4}, means {} {}", mean(&found), mean(&expected));
         require_within(mean(&found), mean(&expected), 0.005, scene);

@@ -212,7 +212,7 @@ fn ctrl_c_leaves_the_samples_so_far_with_their_count_and_they_are_gone_on_with()
     // Slow drivers take long before the first sample.
     let started = Instant::now();
     program.run(&small(&["--spp", "2", "-o", "first.png"])).fine();
-    let wait = (3 * started.elapsed()).max(Duration::from_secs(6));
+    let wait = (3 * started.elapsed()).max(Duration::from_secs(3));
     let interrupted = |file: &str| {
         let started = Instant::now();
         let arguments = small(&["--spp", "65536", "-o", file, "--report", "a.json"]);
