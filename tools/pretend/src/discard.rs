@@ -3,6 +3,7 @@
 //! all other buffers it is the ignored one).
 
 use crate::modes::MODES;
+use crate::slice;
 use crate::tables::{self, DeviceTable};
 use ash::vk;
 
@@ -149,15 +150,4 @@ fn is_dropped_image(barrier: &vk::ImageMemoryBarrier2<'_>) -> bool {
 fn is_dropped_buffer(barrier: &vk::BufferMemoryBarrier2<'_>) -> bool {
     barrier.src_queue_family_index != vk::QUEUE_FAMILY_IGNORED
         && barrier.src_queue_family_index == barrier.dst_queue_family_index
-}
-
-/// # Safety
-///
-/// As many as `count`, where that is not 0.
-pub unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
-    match count {
-        0 => &[],
-        // SAFETY: the caller's promise.
-        count => unsafe { std::slice::from_raw_parts(first, count as usize) },
-    }
 }

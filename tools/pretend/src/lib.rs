@@ -158,3 +158,16 @@ fn fail(what: &str) -> ! {
     eprintln!("pretend: {what}");
     std::process::abort()
 }
+
+/// A list of the program's.
+///
+/// # Safety
+///
+/// As many as `count`, where that is not 0.
+unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
+    match count {
+        0 => &[],
+        // SAFETY: the caller's promise.
+        count => unsafe { std::slice::from_raw_parts(first, count as usize) },
+    }
+}

@@ -2,7 +2,7 @@
 
 use crate::modes::MODES;
 use crate::tables::{self, DeviceTable, InstanceTable, Known};
-use crate::{discard, samples, statistics};
+use crate::{samples, slice, statistics};
 use ash::vk;
 use std::ffi::c_void;
 use std::sync::Mutex;
@@ -93,7 +93,7 @@ pub unsafe extern "system" fn create_device(
         }
         let p_enabled_features = features.as_ref().map_or(std::ptr::null(), |features| features as *const _);
         let info = vk::DeviceCreateInfo { p_enabled_features, ..*info };
-        let plain = samples::without_it(discard::slice(info.pp_enabled_extension_names, info.enabled_extension_count));
+        let plain = samples::without_it(slice(info.pp_enabled_extension_names, info.enabled_extension_count));
         let info = match MODES.placed_samples {
             true => info.enabled_extension_names(&plain),
             false => info,

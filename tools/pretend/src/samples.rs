@@ -1,8 +1,7 @@
 //! Placed samples (VK_EXT_sample_locations) of a driver that lacks them: it is offered, four a pixel, and what a program says of it is checked
 //! and taken out. So they lie where Vulkan's standard has them, wherever they were placed.
 
-use crate::discard::slice;
-use crate::tables;
+use crate::{slice, tables};
 use ash::vk;
 use std::ffi::{CStr, c_char};
 
@@ -21,7 +20,9 @@ pub fn extension() -> vk::ExtensionProperties {
 
 /// Fills the program's struct of the chain that begins at `next`, if there is one.
 ///
-/// SAFETY: every struct of the chain is of the kind that it says.
+/// # Safety
+///
+/// Every struct of the chain is of the kind that it says.
 pub unsafe fn describe(mut next: *mut vk::BaseOutStructure<'_>) {
     while !next.is_null() {
         // SAFETY: the caller's promise.
@@ -41,7 +42,9 @@ pub unsafe fn describe(mut next: *mut vk::BaseOutStructure<'_>) {
 
 /// Names of extensions without it.
 ///
-/// SAFETY: the loader's strings end with a zero.
+/// # Safety
+///
+/// They end with a zero.
 pub unsafe fn without_it(names: &[*const c_char]) -> Vec<*const c_char> {
     // SAFETY: the caller's promise.
     let is_it = |name: &*const c_char| unsafe { CStr::from_ptr(*name) } == ash::ext::sample_locations::NAME;
@@ -71,7 +74,9 @@ pub unsafe extern "system" fn create_graphics_pipelines(
 
 /// Hands `make` a pipeline whose samples are not placed. One whose samples are must have four, and let commands place them.
 ///
-/// SAFETY: the program's struct, with what it points to.
+/// # Safety
+///
+/// The program's struct, with what it points to.
 unsafe fn without_places(
     info: &vk::GraphicsPipelineCreateInfo<'_>,
     make: impl FnOnce(*const vk::GraphicsPipelineCreateInfo<'_>) -> vk::Result,

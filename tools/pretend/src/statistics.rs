@@ -1,6 +1,7 @@
 //! What a driver's compiler says of each shader that it makes (VK_KHR_pipeline_executable_properties), as lines of JSON in the file that
 //! QUINCUNX_PRETEND_STATISTICS names. The program needs to know nothing of it but to name its shader modules.
 
+use crate::slice;
 use crate::tables::{self, DeviceTable};
 use ash::vk;
 use ash::vk::Handle;
@@ -31,11 +32,7 @@ pub fn with_statistics<'a>(
     feature: &'a mut vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR<'_>,
 ) -> vk::DeviceCreateInfo<'a> {
     // SAFETY: the program's names, as many as it says.
-    if info.enabled_extension_count > 0 {
-        names.extend_from_slice(unsafe {
-            std::slice::from_raw_parts(info.pp_enabled_extension_names, info.enabled_extension_count as usize)
-        });
-    }
+    names.extend_from_slice(unsafe { slice(info.pp_enabled_extension_names, info.enabled_extension_count) });
     names.push(ash::khr::pipeline_executable_properties::NAME.as_ptr());
     feature.pipeline_executable_info = vk::TRUE;
     feature.p_next = info.p_next.cast_mut();
