@@ -112,7 +112,7 @@ impl Plan {
         self.push(group, name, Shape::Buffer { bytes, flags, usage: Use::Frame });
     }
 
-    /// Samples of this depth buffer lie where commands place them.
+    /// Samples of this depth buffer lie where commands place them. A buffer in its place is a programmer's mistake.
     pub fn place_samples(&mut self, name: &str) {
         match &mut self.named(name).shape {
             Shape::Image(description) => description.are_placed = true,
@@ -131,10 +131,7 @@ impl Plan {
     pub fn pass(&mut self, name: impl Into<String>, touches: impl IntoIterator<Item = (String, Access)>) {
         let touches = touches
             .into_iter()
-            .map(|(resource, access)| {
-                let index = self.index(&resource).unwrap_or_else(|| panic!("no resource is called {resource}"));
-                Touch { resource: index, access }
-            })
+            .map(|(resource, access)| Touch { resource: self.index_of(&resource), access })
             .collect();
         self.passes.push(PlannedPass { name: name.into(), touches });
     }
@@ -153,10 +150,14 @@ impl Plan {
         self.named(name).is_kept = true;
     }
 
-    /// A name that the plan does not have is a programmer's mistake.
     fn named(&mut self, name: &str) -> &mut Planned {
-        let index = self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"));
+        let index = self.index_of(name);
         &mut self.resources[index]
+    }
+
+    /// A name that the plan does not have is a programmer's mistake.
+    fn index_of(&self, name: &str) -> usize {
+        self.index(name).unwrap_or_else(|| panic!("no resource is called {name}"))
     }
 
     fn index(&self, name: &str) -> Option<usize> {
