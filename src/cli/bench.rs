@@ -1,6 +1,6 @@
 //! `quincunx bench WHAT`: variants of a frame or of one stage, in turn, as JSON lines and as a table.
 
-use super::listed::{self, Asked};
+use super::asked::{self, Asked};
 use super::output;
 use super::{
     bench_allocate, bench_device, bench_file, bench_merge, frames_args, job_args, locality, progress, rays,
@@ -234,7 +234,7 @@ pub(super) fn require_known(flag: &str, key: &str) -> Result<()> {
     }
     let error = Error::request(format!("--{flag} {key}=: there is no setting --{key}"));
     // The parser itself says what a flag resembles.
-    let words = ["bench", What::Frame.name(), "--technique", listed::ALL, &format!("--{key}")].map(str::to_owned);
+    let words = ["bench", What::Frame.name(), "--technique", asked::ALL, &format!("--{key}")].map(str::to_owned);
     let refused = command(&Asked::by(&words)).try_get_matches_from(&words).err();
     let similar = refused.as_ref().and_then(|refused| refused.get(ContextKind::SuggestedArg));
     Err(match similar {

@@ -1,6 +1,6 @@
 //! The flags of a job, made from the settings table: what `render` and `bench` share.
 
-use super::listed::{self, Asked, TechniqueSelection};
+use super::asked::{self, Asked, TechniqueSelection};
 use crate::cli::output::quiet_flag;
 use crate::error::Result;
 use crate::job::Job;
@@ -27,7 +27,7 @@ pub fn with_job_args(asked: &Asked, command: Command) -> Command {
                 .long("technique")
                 .value_name("NAME")
                 // A help flag behind it is not seen where a value is refused.
-                .value_parser(PossibleValuesParser::new(names.chain([PossibleValue::new(listed::ALL).hide(true)])))
+                .value_parser(PossibleValuesParser::new(names.chain([PossibleValue::new(asked::ALL).hide(true)])))
                 .help(format!(
                     "Technique that makes the picture [default: {DEFAULT_TECHNIQUE}]; with --help: list its settings"
                 )),

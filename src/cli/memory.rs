@@ -1,8 +1,8 @@
 //! `quincunx memory`: every byte of a technique, with its owner and its lifetime, as a table, as JSON, as pictures and as a page; what
 //! two of them differ in; and the smallest budget.
 
+use super::asked::Asked;
 use super::job_args;
-use super::listed::Asked;
 use crate::caps::{file, known};
 use crate::cli::output::{folder_flag, print, print_text};
 use crate::error::{Error, Result};

@@ -1,5 +1,6 @@
 //! The command line: one file per verb. Parse, run, print; the library does the rest.
 
+mod asked;
 pub mod bench;
 mod bench_allocate;
 mod bench_device;
@@ -11,7 +12,6 @@ pub mod devices;
 mod frames_args;
 mod gate_args;
 mod job_args;
-mod listed;
 mod locality;
 pub mod man;
 pub mod memory;
@@ -29,8 +29,8 @@ mod spectrum;
 pub mod tune;
 
 use crate::error::Result;
+use asked::Asked;
 use clap::Command;
-use listed::Asked;
 
 /// The program with its verbs, and with the settings of those that are asked for.
 fn command(asked: &Asked) -> Command {

@@ -1,6 +1,6 @@
 //! `quincunx render`: one picture, or one a frame, and what it cost.
 
-use super::listed::Asked;
+use super::asked::Asked;
 use super::{frames_args, job_args, progress, reference_args};
 use crate::cli::output::{print, print_text};
 use crate::continuation::Continuation;

@@ -1,7 +1,7 @@
 //! `quincunx reproduce PAPER/ITEM`: a published table or figure made again, the paper's numbers beside ours.
 
+use super::asked::{Asked, TechniqueSelection};
 use super::job_args::{Row, flag, rows};
-use super::listed::{Asked, TechniqueSelection};
 use super::output::{bare_repeat_flag, folder_flag, print, print_text, quiet_flag};
 use super::progress;
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! `quincunx settings`: every setting of every technique, as text or as the page docs/settings.md.
 
+use super::asked::TechniqueSelection;
 use super::job_args::{self, Row};
-use super::listed::TechniqueSelection;
 use super::output;
 use crate::error::Result;
 use crate::settings::{COMMON, Setting};

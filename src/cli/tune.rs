@@ -1,6 +1,6 @@
 //! `quincunx tune`: settings for this device, found by measuring them under a bound on the error and on the time.
 
-use super::listed::Asked;
+use super::asked::Asked;
 use super::output::{self, print_text};
 use super::{job_args, progress, reference_args};
 use crate::bench::rows_file::{Existing, RowsFile};

@@ -90,6 +90,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn verbs_that_are_named_have_their_settings() {
+        let of = |line: &str| Asked::by(&line.split(' ').map(str::to_owned).collect::<Vec<_>>());
+        let bench_of = |line| crate::cli::command(&of(line)).find_subcommand("bench").cloned().unwrap();
+        for (line, has_shade, has_frame) in [
+            ("quincunx bench shade cornell", true, false),
+            ("quincunx help bench frame", false, true),
+            ("quincunx --version", false, false),
+        ] {
+            let bench = bench_of(line);
+            let found = ["shade", "frame"]
+                .map(|verb| bench.find_subcommand(verb).unwrap().get_arguments().any(|flag| flag.get_id() == "size"));
+            assert_eq!(found, [has_shade, has_frame], "{line}");
+        }
+    }
+
+    #[test]
     fn the_command_says_whose_settings_are_listed() {
         let of = |line: &str| TechniqueSelection::of(&line.split(' ').map(str::to_owned).collect::<Vec<_>>());
         let names = |names: &[&str]| TechniqueSelection::Of(names.iter().map(|name| (*name).to_owned()).collect());
