@@ -2,10 +2,13 @@
 
 use super::recipe::Number;
 
-/// Four digits, as many as papers print.
+/// Four digits, as many as papers print; below a thousandth with a power of ten.
 pub fn digits(value: f64) -> String {
-    let whole = value.abs().max(1e-9).log10().floor() as i32;
-    format!("{value:.*}", (3 - whole).clamp(0, 6) as usize)
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let whole = value.abs().log10().floor() as i32;
+    if whole < -3 { format!("{value:.3e}") } else { format!("{value:.*}", (3 - whole).max(0) as usize) }
 }
 
 /// With its bounds.
@@ -28,7 +31,9 @@ mod tests {
             (117.06, "117.1"),
             (5280.0, "5280"),
             (0.0123, "0.01230"),
-            (0.0, "0.000000"),
+            (0.00123, "0.001230"),
+            (-0.000_018_3, "-1.830e-5"),
+            (0.0, "0"),
         ] {
             assert_eq!(digits(value), text);
         }

@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::values::{Choice, Parameter, Values};
-use super::{arena, chess, cornell, desk, fence, hall, lamps, office, power, shirley, specimen, zone_plate};
+use super::{arena, chess, cornell, desk, fence, hall, lamps, office, panel, power, shirley, specimen, zone_plate};
 
 /// A scene that the program can make.
 pub struct BuiltIn {
@@ -154,6 +154,16 @@ pub const ALL: &[BuiltIn] = &[
             choice: Choice::Switch,
         }],
         make: specimen::make,
+    },
+    BuiltIn {
+        name: "panel",
+        description: "a flat panel of triangles of one size: what shading rates depend on (after Clarberg 2014, figure 7)",
+        parameters: &[Parameter {
+            key: "parts",
+            description: "number of squares along each of its sides of 0.8 metres, two triangles each; the picture is 1.237 metres high there",
+            choice: Choice::Number { default: 100, range: [1, panel::MOST_PARTS] },
+        }],
+        make: panel::make,
     },
     BuiltIn {
         name: "zone-plate",

@@ -15,6 +15,7 @@ mod samplers;
 mod shading_rate;
 mod stages;
 mod stereo;
+mod tessellation;
 mod texture_space;
 mod visibility;
 mod zmax;
