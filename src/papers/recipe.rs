@@ -278,6 +278,17 @@ impl Source {
         Self::document(step, format!("/counters/{name}"), 1.0)
     }
 
+    /// A counter of all frames of a film's report, which `together` makes one number of.
+    pub fn frames(step: impl Into<String>, name: &str, together: fn(&[f64]) -> f64) -> Self {
+        let pointer = format!("/counters/{name}");
+        let read = move |document: &Value| {
+            let frames = document.get("frames")?.as_array()?;
+            let counts = frames.iter().map(|frame| frame.pointer(&pointer)?.as_f64());
+            Some(together(&counts.collect::<Option<Vec<_>>>()?))
+        };
+        Self::Document { step: step.into(), read: Box::new(read) }
+    }
+
     /// A metric of a comparison.
     pub fn metric(step: impl Into<String>, name: &str) -> Self {
         Self::document(step, format!("/metrics/{name}"), 1.0)

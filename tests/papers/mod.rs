@@ -68,6 +68,38 @@ fn buffers_of_deep_shading_come_out_as_published() {
     assert!(text.contains("| frame buffer ") && text.contains("84.38") && text.contains("**comparable.**"), "{text}");
 }
 
+/// Moments of a film are frames of one step, at the times at which pictures of their own would be.
+#[test]
+fn rates_along_a_flight_are_those_of_its_moments() {
+    let program = Program::new();
+    let asked =
+        ["reproduce", "clarberg-2014/figure-6", "--quick", "--frames", "2", "--only", "2d-0", "--quiet", "-o", "out"];
+    program.run(&asked).fine();
+    let result = document(&program, "out/clarberg-2014/figure-6/result.json");
+    let [least, mean, greatest] = ["least", "mean", "greatest"]
+        .map(|column| cell(&result, 0, "still", column)["ours"]["value"].as_f64().unwrap());
+    let command = read(&program, "out/clarberg-2014/figure-6/2d-0.command");
+    let words =
+        command.lines().skip_while(|line| *line != "render").filter(|line| *line != "--frames").collect::<Vec<_>>();
+    let rate = |time: &str| {
+        let mut words = words.clone();
+        let range = words.iter().position(|word| *word == "0..1").expect("two frames");
+        words[range] = "--time";
+        words.insert(range + 1, time);
+        let fps = words.iter().position(|word| *word == "--fps").unwrap();
+        words.drain(fps..fps + 2);
+        let report = words.iter().position(|word| *word == "--report").unwrap() + 1;
+        words[report] = "one.json";
+        words.push("--quiet");
+        program.run(&words).fine();
+        document(&program, "one.json")["counters"]["shaded_per_pixel"].as_f64().unwrap()
+    };
+    let [at_start, half_way] = ["0", "30"].map(rate);
+    assert_ne!(at_start, half_way);
+    assert_eq!((least, greatest), (at_start.min(half_way), at_start.max(half_way)));
+    assert!((mean - 0.5 * (at_start + half_way)).abs() < 1e-12, "{mean} of {at_start} and {half_way}");
+}
+
 /// A table with rows: parts are those of the rows' own ratios, and what is there is not measured again.
 #[test]
 fn a_table_is_measured_once_and_goes_on_where_it_was_torn() {

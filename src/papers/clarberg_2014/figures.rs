@@ -204,32 +204,51 @@ const FLIGHTS: [(&str, &str, &str); 3] = [
     ("5d", "motion and defocus", "--shutter 0,0.0166667 --aperture 0.1"),
 ];
 
+/// Most moments of one step: what is lost where it is stopped.
+const MOMENTS_OF_STEP: u32 = 60;
+
 fn figure_6(effort: Effort) -> Recipe {
     let mut recipe = Recipe::default();
     let moments = effort.frames.unwrap_or(effort.pick(MOMENTS, 6));
+    let per_second = f64::from(moments) / 60.0;
+    let firsts = || (0..moments).step_by(MOMENTS_OF_STEP as usize);
     for (step, _, words) in FLIGHTS {
-        for moment in 0..moments {
-            let time = 60.0 * f64::from(moment) / f64::from(moments);
-            let words = format!("{} --camera flight --time {time} {words} {UNLIT}", pictures(effort));
-            recipe.step(Step::render(format!("{step}-{moment}"), "png", "arena", &words));
+        for first in firsts() {
+            let last = (first + MOMENTS_OF_STEP).min(moments) - 1;
+            let film = format!("--frames {first}..{last} --fps {per_second}");
+            let words = format!("{} --camera flight {film} {words} {UNLIT}", pictures(effort));
+            recipe.step(Step::render(format!("{step}-{first}"), "png", "arena", &words));
         }
     }
-    let rates = |steps: &[&str]| -> Vec<Source> {
-        let of = |step: &&str| (0..moments).map(|moment| format!("{step}-{moment}")).collect::<Vec<_>>();
-        steps.iter().flat_map(of).map(|step| Source::counter(step, "shaded_per_pixel")).collect()
-    };
     let rows = FLIGHTS.map(|(step, title, _)| (title, vec![step]));
     for (row, steps) in rows.into_iter().chain([("all three together", FLIGHTS.map(|(step, _, _)| step).to_vec())]) {
+        let rates = |of: fn(&[f64]) -> f64| -> Vec<Source> {
+            let films = steps.iter().flat_map(|step| firsts().map(move |first| format!("{step}-{first}")));
+            films.map(|film| Source::frames(film, "shaded_per_pixel", of)).collect()
+        };
+        recipe.cell(0, row, "least", Source::combined(rates(least), least));
+        recipe.cell(0, row, "greatest", Source::combined(rates(greatest), greatest));
+        // Films may differ in length.
+        let sums_and_lengths = rates(|all| all.iter().sum()).into_iter().chain(rates(|all| all.len() as f64));
         recipe.cell(
             0,
             row,
-            "least",
-            Source::combined(rates(&steps), |all| all.iter().copied().fold(f64::INFINITY, f64::min)),
+            "mean",
+            Source::combined(sums_and_lengths, |parts| {
+                let (sums, lengths) = parts.split_at(parts.len() / 2);
+                sums.iter().sum::<f64>() / lengths.iter().sum::<f64>()
+            }),
         );
-        recipe.cell(0, row, "mean", Source::combined(rates(&steps), |all| all.iter().sum::<f64>() / all.len() as f64));
-        recipe.cell(0, row, "greatest", Source::combined(rates(&steps), |all| all.iter().copied().fold(0.0, f64::max)));
     }
     recipe
+}
+
+fn least(all: &[f64]) -> f64 {
+    all.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn greatest(all: &[f64]) -> f64 {
+    all.iter().copied().fold(0.0, f64::max)
 }
 
 pub const FIGURE_7: Item = Item {
