@@ -354,6 +354,9 @@ pub struct Features {
     /// Fragment shaders run once a sample. False in caps files older than this field.
     #[serde(default)]
     pub sample_rate_shading: bool,
+    /// VK_KHR_fragment_shader_barycentric with its feature. False in caps files older than this field.
+    #[serde(default)]
+    pub fragment_shader_barycentric: bool,
     pub sampler_anisotropy: bool,
     pub storage_image_extended_formats: bool,
     pub shader_float16: bool,

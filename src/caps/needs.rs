@@ -95,6 +95,10 @@ abilities! {
         "VK_EXT_conservative_rasterization with degenerateTrianglesRasterized",
         "conservative rasterisation of every triangle",
         |caps| caps.conservative.is_some_and(|rules| rules.draws_degenerate_triangles);
+    /// Fragment shaders are told where on its triangle a fragment is.
+    FragmentBarycentrics:
+        "VK_KHR_fragment_shader_barycentric", "barycentrics of fragments",
+        |caps| caps.features.fragment_shader_barycentric;
     /// Samples lie in sixteenths of a pixel where they are told to.
     SampleLocations:
         "VK_EXT_sample_locations at sixteenths of a pixel", "placed samples",

@@ -139,7 +139,7 @@ mod tests {
         let text = listed("lavapipe-22.3.6");
         let (has, has_no) = text.split_once("   has no ").unwrap();
         assert!(has.starts_with("   has float depth, ") && has.ends_with(", timestamps\n"), "{text}");
-        let rest = "conservative rasterisation of every triangle, placed samples, ray queries, memory budget\n";
+        let rest = "conservative rasterisation of every triangle, barycentrics of fragments, placed samples, ray queries, memory budget\n";
         assert_eq!(has_no, format!("filtered depth, 8 samples a pixel, {rest}"));
         for name in known::names() {
             let text = listed(name);

@@ -298,6 +298,8 @@ impl Gpu {
             .shader_buffer_int64_atomics(caps.features.shader_int64_atomics);
         let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default().acceleration_structure(true);
         let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default().ray_query(true);
+        let mut barycentrics =
+            vk::PhysicalDeviceFragmentShaderBarycentricFeaturesKHR::default().fragment_shader_barycentric(true);
         let extension_names = probe::used_extensions(&instance, physical, &caps);
         let extensions: Vec<*const c_char> = extension_names.iter().map(|name| name.as_ptr()).collect();
         let mut info = vk::DeviceCreateInfo::default()
@@ -308,6 +310,9 @@ impl Gpu {
             .push_next(&mut features13);
         if caps.features.ray_query {
             info = info.push_next(&mut structures).push_next(&mut ray_queries);
+        }
+        if caps.features.fragment_shader_barycentric {
+            info = info.push_next(&mut barycentrics);
         }
         // SAFETY: every pointer in `info` outlives the call; the features were found present.
         let created = unsafe { instance.create_device(physical, &info, None) };

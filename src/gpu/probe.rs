@@ -50,6 +50,9 @@ pub fn used_extensions(instance: &ash::Instance, physical: vk::PhysicalDevice, c
     if caps.conservative.is_some() {
         used.push(ash::ext::conservative_rasterization::NAME);
     }
+    if caps.features.fragment_shader_barycentric {
+        used.push(ash::khr::fragment_shader_barycentric::NAME);
+    }
     if caps.sample_locations.is_some() {
         used.push(ash::ext::sample_locations::NAME);
     }
@@ -137,10 +140,12 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
     let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
     let mut structures = vk::PhysicalDeviceAccelerationStructureFeaturesKHR::default();
     let mut ray_queries = vk::PhysicalDeviceRayQueryFeaturesKHR::default();
+    let mut barycentrics = vk::PhysicalDeviceFragmentShaderBarycentricFeaturesKHR::default();
     let mut features2 = vk::PhysicalDeviceFeatures2::default()
         .push_next(&mut features12)
         .push_next(&mut structures)
-        .push_next(&mut ray_queries);
+        .push_next(&mut ray_queries)
+        .push_next(&mut barycentrics);
     // SAFETY: as above.
     unsafe { instance.get_physical_device_features2(physical, &mut features2) };
     let features = features2.features;
@@ -218,6 +223,8 @@ pub fn caps(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Caps {
             depth_clamp: features.depth_clamp != 0,
             occlusion_query_precise: features.occlusion_query_precise != 0,
             sample_rate_shading: features.sample_rate_shading != 0,
+            fragment_shader_barycentric: has("VK_KHR_fragment_shader_barycentric")
+                && barycentrics.fragment_shader_barycentric != 0,
             sampler_anisotropy: features.sampler_anisotropy != 0,
             storage_image_extended_formats: features.shader_storage_image_extended_formats != 0,
             shader_float16: features12.shader_float16 != 0,

@@ -100,6 +100,7 @@ mod tests {
         let mut caps = known::caps("amd-navi21").unwrap();
         // It was not looked up there.
         caps.sample_locations = known::caps("nvidia-h200").unwrap().sample_locations;
+        caps.features.fragment_shader_barycentric = true;
         change(&mut caps);
         caps
     }

@@ -114,6 +114,8 @@ pub enum Feature {
     BlendFixedPairs,
     /// A sample's place in its pixel is the program's to say.
     SampleLocations,
+    /// Fragment shaders are told where on its triangle a fragment is.
+    FragmentBarycentrics,
 }
 
 impl Feature {
@@ -129,6 +131,7 @@ impl Feature {
             Self::SampleShading => caps.features.sample_rate_shading,
             Self::BlendFixedPairs => caps.formats.fixed_pair_blend,
             Self::SampleLocations => Ability::SampleLocations.is_there(caps),
+            Self::FragmentBarycentrics => Ability::FragmentBarycentrics.is_there(caps),
         }
     }
 
@@ -143,7 +146,7 @@ impl Feature {
             | Self::PreciseOcclusion
             | Self::SampleShading
             | Self::BlendFixedPairs => true,
-            Self::RayQuery | Self::SampleLocations => false,
+            Self::RayQuery | Self::SampleLocations | Self::FragmentBarycentrics => false,
         }
     }
 
@@ -162,6 +165,7 @@ impl Feature {
             Self::SampleShading => "sampleRateShading".to_owned(),
             Self::BlendFixedPairs => "R16G16_UNORM as blended colour attachment".to_owned(),
             Self::SampleLocations => Ability::SampleLocations.name().to_owned(),
+            Self::FragmentBarycentrics => Ability::FragmentBarycentrics.name().to_owned(),
         }
     }
 }

@@ -1,7 +1,10 @@
 // A triangle at the pixels of shading space that it touches: shaded where the list has it (section 4.4; appendix A, pass 3).
 // Pass: src/techniques/deep_shading/shade/mod.rs.
-// variants: LISTS=linked|compact VERTEX=plain|extended SHADOWS=traced|mapped
+// variants: LISTS=linked|compact VERTEX=plain|extended SHADOWS=traced|mapped BARYCENTRICS=computed|interpolated|device
 #version 460
+#ifdef BARYCENTRICS_DEVICE
+#extension GL_EXT_fragment_shader_barycentric : require
+#endif
 #include "techniques/deep_shading/buffer_addresses.glsl"
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
@@ -16,6 +19,11 @@ layout(constant_id = 94) const uint IS_COUNTED = 0;
 layout(early_fragment_tests) in;
 
 layout(location = 0) flat in uint in_primitive;
+#ifdef BARYCENTRICS_INTERPOLATED
+layout(location = 1) in vec3 in_weights;
+#elif defined(BARYCENTRICS_DEVICE)
+#define in_weights gl_BaryCoordEXT
+#endif
 
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
 layout(std430, set = 0, binding = 21) readonly buffer Nodes { uvec2 nodes[]; };
@@ -33,7 +41,26 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/nodes.glsl"
 
+// Writes what is interpolated elsewhere.
+void stand(uvec2 at, Place drawn) {
+#ifndef BARYCENTRICS_COMPUTED
+    if (all(greaterThanEqual(drawn.weights, vec3(0.0)))) {
+        stand_at(in_primitive, drawn);
+        return;
+    }
+#endif
+    stand_in(in_primitive, at, false, vec3(0.0));
+}
+
 void main() {
+    Place drawn;
+#ifndef BARYCENTRICS_COMPUTED
+    // Rates are of all four pixels of a quad, before any returns.
+    drawn.weights = in_weights;
+    drawn.right = dFdx(in_weights);
+    drawn.down = dFdy(in_weights);
+    drawn.is_front = gl_FrontFacing != ((params.flags & DRAWN_MIRRORED) != 0u);
+#endif
     uvec2 at = uvec2(gl_FragCoord.xy);
     // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer. Nothing is
     // attached that could be written, so a thread returns: one that is discarded continues as a helper of its quad
@@ -53,7 +80,8 @@ void main() {
     if (color == NO_COLOR) {
         return;
     }
-    uvec2 shaded = color_on(in_primitive, at, false, vec3(0.0));
+    stand(at, drawn);
+    uvec2 shaded = color_of_base(base_color_at(params.material));
     set_color(color, shaded);
 #ifdef LISTS_LINKED
     if (TOLERATES_DUPLICATES != 0u) {

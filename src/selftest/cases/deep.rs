@@ -27,6 +27,14 @@ const SAMPLES: Bounds = Bounds {
     why: "rasterised samples lie on a device's grid in a pixel, which may be as coarse as a sixteenth, others where floats \
           say: those along edges see the other surface",
 };
+const PLACES: Bounds = Bounds {
+    apart: 0.02,
+    rmse: 0.02,
+    flip: 0.01,
+    mean: 0.002,
+    why: "rasterisers snap corners to a grid in a pixel, as coarse as a sixteenth, before they interpolate; levels of textures are \
+          then differences between neighbouring pixels",
+};
 const SHARED: Bounds = Bounds {
     apart: 0.5,
     rmse: 0.05,
@@ -120,6 +128,18 @@ pub const GROUPS: &[Group] = &[
         twin: ALONE,
         methods: CONSERVATIVE,
         must: Must::Equal(ROUNDING),
+    },
+    Group {
+        name: "barycentrics",
+        technique: NAME,
+        place: HALL,
+        common: &[FEW, FRAGMENT, ("direct-shadow", "none")],
+        twin: ALONE,
+        methods: &[
+            &[("conservative", "hardware"), ("barycentrics", "interpolated")],
+            &[("conservative", "hardware"), ("barycentrics", "device")],
+        ],
+        must: Must::Near(PLACES),
     },
     Group {
         name: "control",

@@ -15,8 +15,9 @@ use crate::passes::texels::Texels;
 use crate::settings::{GeometryChoice, Values};
 use crate::techniques::Inputs;
 use crate::techniques::deep_shading::contradictions::{
-    require_both, require_direct, require_drawn, require_spids, require_straight,
+    require_both, require_corners, require_direct, require_drawn, require_spids, require_straight,
 };
+use crate::techniques::deep_shading::modes::barycentrics::Barycentrics;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::coverage_test::CoverageTest;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
@@ -58,6 +59,8 @@ pub struct RasterChoices {
     pub layer_from: LayerFrom,
     pub polygon_from: PolygonFrom,
     pub conservative: Conservative,
+    /// Where fragments that shade have their weights from.
+    pub barycentrics: Barycentrics,
     /// Stochastic rasterisation tests all samples of a pixel at once.
     pub is_looped: bool,
     /// By what it tests them.
@@ -121,6 +124,7 @@ impl Choices {
         let is_direct = has_lists && values.is("lists", Lists::Direct);
         require_direct(values)?;
         require_straight(values)?;
+        require_corners(values)?;
         require_spids(values)?;
         require_both(values)?;
         require_drawn(values)?;
@@ -171,6 +175,7 @@ impl Choices {
                 layer_from: LayerFrom::of(values, inputs.caps),
                 polygon_from: PolygonFrom::of(values, inputs.caps),
                 conservative: Conservative::of(values, inputs.caps),
+                barycentrics: values.choice("barycentrics"),
                 is_looped: is_of_space && is_looped(values, inputs.caps, visibility, samples_of_set * NEAREST_BYTES),
                 coverage_test: values.choice("coverage-test"),
                 has_padding: visibility.is_layered() && !table.divides(inputs.view.extent),

@@ -2,8 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::settings::{StereoEyes, Values};
+use crate::techniques::deep_shading::modes::barycentrics::Barycentrics;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::lists::Lists;
+use crate::techniques::deep_shading::modes::shade_by::ShadeBy;
 use crate::techniques::deep_shading::modes::shading_kind::ShadingKind;
 use crate::techniques::deep_shading::modes::shading_rate::ShadingRate;
 use crate::techniques::deep_shading::modes::visibility::Visibility;
@@ -74,6 +76,20 @@ pub fn require_drawn(values: &Values) -> Result<()> {
     Err(Error::request("--shading-rate blur with --visibility ray: the host does not know how coarse triangles are")
         .within(NAME)
         .note("--visibility stochastic sees the same samples"))
+}
+
+/// Errors: weights of corners where hulls are drawn, which have others (exit code 2).
+pub fn require_corners(values: &Values) -> Result<()> {
+    let barycentrics: Barycentrics = values.choice("barycentrics");
+    let drawn = values.unless_auto("conservative", Values::choice);
+    let draws_corners = matches!(drawn, Some(Conservative::Hardware | Conservative::Plain));
+    if barycentrics == Barycentrics::Computed || ShadeBy::of(values) != Some(ShadeBy::Fragment) || draws_corners {
+        return Ok(());
+    }
+    let why = "hulls that are drawn around triangles do not have their corners";
+    Err(Error::request(format!("--barycentrics {}: {why}", barycentrics.name()))
+        .within(NAME)
+        .note("--conservative hardware and none draw triangles as they are"))
 }
 
 /// Errors: the device draws triangles itself that shading space has bent (exit code 2).

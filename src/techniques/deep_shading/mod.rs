@@ -116,6 +116,7 @@ use crate::passes::shadow_maps::{self, MapLayout};
 use crate::plan::Plan;
 use crate::settings::{INSTRUMENT, SHADOW_MAPS, Setting, TEXELS, Values};
 use crate::techniques::deep_shading::choices::list_access_name;
+use crate::techniques::deep_shading::modes::barycentrics::Barycentrics;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::sample_tests::SampleTests;
 use crate::techniques::deep_shading::modes::sample_tests::sample_tests_name;
@@ -209,6 +210,10 @@ impl Technique for DeepShading {
                 needs.push(need("--conservative hardware", Ability::ConservativeRaster, instead));
             }
             Conservative::Vertex | Conservative::Plain => {}
+        }
+        if shading == ShadingKind::Deep && values.is("barycentrics", Barycentrics::Device) {
+            let instead = "--barycentrics interpolated works without it";
+            needs.push(need("--barycentrics device", Ability::FragmentBarycentrics, instead));
         }
         needs.extend(baseline::needs(values));
         needs.extend(shadow_maps::needs(values));

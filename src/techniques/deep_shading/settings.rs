@@ -5,6 +5,7 @@ use crate::settings::{
     APERTURE, BRDF, Changes, FOCUS, GEOMETRY, INSTRUMENT, Kind, MAPPED_DIRECT_SHADOW, SHUTTER, STEREO, STEREO_EYES,
     Setting, TEXELS, Unread, Values,
 };
+use crate::techniques::deep_shading::modes::barycentrics::Barycentrics;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::modes::coverage_test::CoverageTest;
 use crate::techniques::deep_shading::modes::layer_from::LayerFrom;
@@ -401,6 +402,19 @@ pub const SETTINGS: &[Setting] = &[
                picture, or an error that says how many samples have no colour; \
                auto: geometry where there are such shaders, vertex elsewhere; none: only pixels whose middle the \
                triangle covers, to measure what the others cost and how much has no colour then",
+        unread: without_fragments,
+        ..Setting::changing(Changes::Picture)
+    },
+    Setting {
+        key: "barycentrics",
+        kind: Kind::Choice(Barycentrics::WORDS),
+        default: "computed",
+        paper: "Clarberg 2014, 5",
+        help: "Where fragments that shade take their place on a triangle from: its corners, in one order of operations, to the \
+               same bits however it was drawn (computed); the rasteriser, which interpolates the corners' weights \
+               (interpolated); or the device, which has them for every fragment (device, \
+               VK_KHR_fragment_shader_barycentric). The last two need triangles to be drawn as they are: --conservative \
+               hardware or none. A pixel whose middle lies beside its triangle is computed",
         unread: without_fragments,
         ..Setting::changing(Changes::Picture)
     },

@@ -1,6 +1,7 @@
 //! Deep shading buffers: every way to build and to read the lists gives the bits of shading every sample by itself; what is
 //! shaded is what is listed, each once; blur equals what path tracing sees.
 
+mod barycentrics;
 mod baselines;
 mod entries;
 mod guard_band;

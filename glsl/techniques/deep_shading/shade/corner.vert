@@ -1,6 +1,6 @@
 // A corner of a triangle in canonical shading space, clip space of its frame. Pass:
 // src/techniques/deep_shading/shade/corner.rs. Appendix A, pass 3.
-// variants: MARKS=off|on
+// variants: MARKS=off|on WEIGHTS=off|on
 #version 460
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/scaled.glsl"
@@ -10,6 +10,9 @@
 layout(constant_id = 111) const uint HAS_ONE_DEPTH = 0;
 
 layout(location = 0) flat out uint out_primitive;
+#ifdef WEIGHTS_ON
+layout(location = 1) out vec3 out_weights;
+#endif
 #ifdef MARKS_ON
 layout(std430, set = 0, binding = 44) readonly buffer Marks { uint marks[]; };
 #include "techniques/deep_shading/lists/marks.glsl"
@@ -18,6 +21,9 @@ layout(std430, set = 0, binding = 44) readonly buffer Marks { uint marks[]; };
 void main() {
     uint corner = uint(gl_VertexIndex);
     out_primitive = params.primitive_offset + corner / 3u;
+#ifdef WEIGHTS_ON
+    out_weights = vec3(equal(uvec3(0u, 1u, 2u), uvec3(corner % 3u)));
+#endif
 #ifdef MARKS_ON
     if (!is_marked(out_primitive)) {
         // Outside the view: some devices draw what has no area.

@@ -1,6 +1,7 @@
 //! What settings choose between: a file for each, with what it may be, how it is parsed and which settings go with it.
 //! The work that a choice stands for lies with the pass that does it.
 
+pub mod barycentrics;
 pub mod conservative;
 pub mod coverage_test;
 pub mod layer_from;

@@ -5,10 +5,10 @@ use crate::gpu::shader::techniques::deep_shading::shade::corner::VERT_VARIANTS;
 use crate::gpu::shader::variant;
 use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
-/// `marks`: the value of the shader's axis.
-pub(super) fn stages(is_conservative: bool, marks: &str) -> SpaceStages {
+/// `marks`, `weights`: values of the shader's axes.
+pub(super) fn stages(is_conservative: bool, marks: &str, weights: &str) -> SpaceStages {
     SpaceStages {
-        vertex: variant(VERT_VARIANTS, &[marks]),
+        vertex: variant(VERT_VARIANTS, &[marks, weights]),
         geometry: None,
         is_conservative,
         has_hulls: false,

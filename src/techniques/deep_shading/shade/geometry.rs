@@ -4,11 +4,11 @@ use crate::gpu::shader::techniques::deep_shading::shade::{corner::VERT_VARIANTS,
 use crate::gpu::shader::variant;
 use crate::techniques::deep_shading::shade::stages::SpaceStages;
 
-/// `marks`: the value of the geometry shader's axis; corners are made of all triangles.
+/// `marks`: the value of the geometry shader's axis; corners are made of all triangles, without weights.
 pub(super) fn stages(marks: &str) -> SpaceStages {
     let geometry = Some(variant(GEOM_VARIANTS, &[marks]));
     SpaceStages {
-        vertex: variant(VERT_VARIANTS, &["off"]),
+        vertex: variant(VERT_VARIANTS, &["off", "off"]),
         geometry,
         is_conservative: false,
         has_hulls: true,

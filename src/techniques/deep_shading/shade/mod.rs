@@ -10,7 +10,7 @@ pub mod geometry;
 pub(super) mod stages;
 pub mod vertex;
 
-use super::choices::Choices;
+use super::choices::{Choices, RasterChoices};
 use super::lists::ListsEdge;
 use super::pass_inputs::{DrawInputs, ShadingEdges};
 use crate::error::Result;
@@ -23,6 +23,7 @@ use crate::passes::shadow_maps;
 use crate::plan::Resources;
 use crate::resident::{SceneGpu, Sides};
 use crate::techniques::deep_shading::choices::constants_of;
+use crate::techniques::deep_shading::modes::barycentrics::Barycentrics;
 use crate::techniques::deep_shading::modes::conservative::Conservative;
 use crate::techniques::deep_shading::resources::{DEPTH_FORMAT, SHADE_DEPTH, full};
 use crate::techniques::deep_shading::shade::stages::SpaceStages;
@@ -30,14 +31,13 @@ use crate::units::Extent;
 use ash::vk;
 use std::sync::Arc;
 
-impl Conservative {
-    fn stages(self, marks: &str) -> SpaceStages {
-        match self {
-            Self::Hardware => corner::stages(true, marks),
-            Self::Geometry => geometry::stages(marks),
-            Self::Vertex => vertex::stages(marks),
-            Self::Plain => corner::stages(false, marks),
-        }
+fn stages_of(choices: &RasterChoices, marks: &str) -> SpaceStages {
+    let weights = if choices.barycentrics == Barycentrics::Interpolated { "on" } else { "off" };
+    match choices.conservative {
+        Conservative::Hardware => corner::stages(true, marks, weights),
+        Conservative::Geometry => geometry::stages(marks),
+        Conservative::Vertex => vertex::stages(marks),
+        Conservative::Plain => corner::stages(false, marks, weights),
     }
 }
 
@@ -52,9 +52,10 @@ pub struct Shade {
 impl Shade {
     pub fn new(gpu: &Arc<Gpu>, scene: &SceneGpu, resources: &mut Resources, choices: &Choices) -> Result<Self> {
         let lists = if choices.lists.is_compacted { "compact" } else { "linked" };
-        let stages = choices.raster.conservative.stages(if choices.lists.has_marks { "on" } else { "off" });
+        let stages = stages_of(&choices.raster, if choices.lists.has_marks { "on" } else { "off" });
         let shadows = shadow_maps::axis(choices.maps.is_some());
-        let fragment = variant(FRAG_VARIANTS, &[lists, mesh::vertex_name(scene), shadows]);
+        let axes = [lists, mesh::vertex_name(scene), shadows, choices.raster.barycentrics.name()];
+        let fragment = variant(FRAG_VARIANTS, &axes);
         let shaders = [Some(stages.vertex), stages.geometry, Some(fragment)];
         let depth = choices.lists.has_zmax.then(|| resources.image(&full(SHADE_DEPTH)));
         let mut constants = constants_of(choices, &shaders);
