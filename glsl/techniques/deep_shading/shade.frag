@@ -1,4 +1,5 @@
-// A triangle at the pixels of shading space that it touches: shaded where the list has it (section 4.4; appendix A, pass 3).
+// A triangle at the pixels of shading space that it touches: shaded where the list has it (section 4.4; appendix A, pass 3), at a
+// place that is computed, interpolated or the device's (section 5).
 // Pass: src/techniques/deep_shading/shade/mod.rs.
 // variants: LISTS=linked|compact VERTEX=plain|extended SHADOWS=traced|mapped BARYCENTRICS=computed|interpolated|device
 #version 460
@@ -9,6 +10,9 @@
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/counters.glsl"
+#ifndef BARYCENTRICS_COMPUTED
+#include "techniques/deep_shading/drawn_place.glsl"
+#endif
 
 // As in insert.comp.
 layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
@@ -41,25 +45,9 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 #include "techniques/deep_shading/nodes.glsl"
 
-// Writes what is interpolated elsewhere.
-void stand(uvec2 at, Place drawn) {
-#ifndef BARYCENTRICS_COMPUTED
-    if (all(greaterThanEqual(drawn.weights, vec3(0.0)))) {
-        stand_at(in_primitive, drawn);
-        return;
-    }
-#endif
-    stand_in(in_primitive, at, false, vec3(0.0));
-}
-
 void main() {
-    Place drawn;
 #ifndef BARYCENTRICS_COMPUTED
-    // Rates are of all four pixels of a quad, before any returns.
-    drawn.weights = in_weights;
-    drawn.right = dFdx(in_weights);
-    drawn.down = dFdy(in_weights);
-    drawn.is_front = gl_FrontFacing != ((params.flags & DRAWN_MIRRORED) != 0u);
+    Place drawn = drawn_place(in_weights);
 #endif
     uvec2 at = uvec2(gl_FragCoord.xy);
     // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer. Nothing is
@@ -80,7 +68,15 @@ void main() {
     if (color == NO_COLOR) {
         return;
     }
-    stand(at, drawn);
+#ifdef BARYCENTRICS_COMPUTED
+    stand_in(in_primitive, at, false, vec3(0.0));
+#else
+    if (all(greaterThanEqual(drawn.weights, vec3(0.0)))) {
+        stand_at(in_primitive, drawn);
+    } else {
+        stand_in(in_primitive, at, false, vec3(0.0));
+    }
+#endif
     uvec2 shaded = color_of_base(base_color_at(params.material));
     set_color(color, shaded);
 #ifdef LISTS_LINKED

@@ -173,12 +173,6 @@ void stand_in(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
     stand_on(a, b, c, vertices, place);
 }
 
-// The colour there.
-uvec2 color_on(uint primitive, uvec2 pixel, bool is_given, vec3 weights) {
-    stand_in(primitive, pixel, is_given, weights);
-    return color_of_base(base_color_at(params.material));
-}
-
 // Writes what is interpolated elsewhere, of a place on `primitive`.
 void stand_at(uint primitive, Place place) {
     uvec3 vertices = vertices_of(primitive);

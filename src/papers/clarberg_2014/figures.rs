@@ -3,6 +3,7 @@
 use super::scenes::{UNLIT, blurred, frames, pictures};
 use crate::papers::item::{ABSENT, Item, Published, Scale, Verdict};
 use crate::papers::recipe::{Effort, Recipe, Source, Step};
+use crate::scene::procedural::panel;
 
 const EXECUTIONS: &str = "executions a pixel";
 const LONGEST: &str = "longest list";
@@ -278,15 +279,11 @@ pub const FIGURE_7: Item = Item {
     recipe: Some(figure_7),
 };
 
-/// How high a picture of `panel` is where that stands, and how wide it is, by its source; metres.
-const PANEL_SEEN_M: f64 = 1.237_345;
-const PANEL_M: f64 = 0.8;
-
 fn figure_7(effort: Effort) -> Recipe {
     let mut recipe = Recipe::default();
-    let px_m = PANEL_SEEN_M / effort.pick(720.0, 180.0);
+    let px_m = panel::picture_height_m() / effort.pick(720.0, 180.0);
     for side_px in [16, 8, 4, 2] {
-        let scene = format!("panel:parts={:.0}", PANEL_M / (px_m * f64::from(side_px)));
+        let scene = format!("panel:parts={:.0}", panel::SIDE_M / (px_m * f64::from(side_px)));
         for blur_px in [0, 4, 16, 64] {
             let step = format!("panel-{side_px}-{blur_px}");
             // A panel twice as far as what is in focus is blurred as wide as the lens is.

@@ -13,7 +13,7 @@ mod hall;
 mod lamps;
 mod made;
 mod office;
-mod panel;
+pub mod panel;
 mod patch;
 mod patterns;
 mod pictures;

@@ -1,6 +1,6 @@
 //! A flat square panel, parted into triangles of one size and seen from straight before it, two metres away, on black: nothing hides any of
-//! it, and a lens that is focused elsewhere blurs all of it alike, within the picture. What shading rates depend on can be seen
-//! alone on it.
+//! it, and a lens that is focused elsewhere blurs all of it alike, within the picture up to 0.23 m. What shading rates depend on can
+//! be seen alone on it.
 //!
 //! Its edges are turned against those of the picture, so that pixels cut triangles in all ways. A picture H pixels high shows 1.237 m, and
 //! each square of two triangles is 0.8 / `parts` metres wide.
@@ -14,7 +14,8 @@ use super::patch::{Patch, Point, sin_cos_turns};
 use crate::scene::procedural::values::Values;
 use crate::scene::{Light, LightKind, Material};
 
-const SIDE_M: f64 = 0.8;
+/// Length of its sides.
+pub const SIDE_M: f64 = 0.8;
 const EYE_M: f64 = 2.0;
 /// Angle of the picture's height, radians.
 const Y_FOV: f32 = 0.6;
@@ -26,6 +27,11 @@ const LAMP_CD: Vec3 = vec3(1.0, 0.95, 0.85);
 
 /// Most squares along a side: 7.2 million triangles.
 pub const MOST_PARTS: u64 = 1900;
+
+/// How high the picture is where the panel stands, metres.
+pub fn picture_height_m() -> f64 {
+    2.0 * EYE_M * (0.5 * f64::from(Y_FOV)).tan()
+}
 
 /// The panel; the seed changes nothing.
 pub fn make(values: &Values, _seed: u64) -> Assembly {

@@ -20,6 +20,8 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 
 #include "techniques/deep_shading/visibility/hit.glsl"
 #else
+#include "techniques/deep_shading/drawn_place.glsl"
+
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) in vec3 in_weights;
 #ifdef ALPHA_OPAQUE
@@ -46,10 +48,8 @@ bool is_placed(out Place place) {
     place = hit_place(tuple, gl_FragCoord.xy, weights);
     gl_FragDepth = depth;
 #else
-    place.weights = inside_weights(in_weights);
-    place.right = dFdx(in_weights);
-    place.down = dFdy(in_weights);
-    place.is_front = gl_FrontFacing != ((params.flags & DRAWN_MIRRORED) != 0u);
+    place = drawn_place(in_weights);
+    place.weights = inside_weights(place.weights);
 #endif
     // A layer's pixels are a table apart.
     place.right /= float(deep.table_width_px);
