@@ -33,11 +33,10 @@ pub const SETTINGS: &[Setting] = &[
         default: "deep",
         paper: "Clarberg 2014, 6",
         help: "What is shaded: the triangles in the lists (deep); or, as a baseline, every sample that is drawn \
-               (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation, which \
-               --visibility repeat-frame means here too (msaa); by a compute shader, the entries of a compact geometry \
-               buffer that samples point to (indirect-gbuffer; Liktor and Dachsbacher 2012); or the texels of a \
-               texture of each draw, which is then drawn with that texture (texture-space; Andersson et al. 2014; \
-               meshes need atlases)",
+               (ssaa); each triangle once for the samples of a pixel that see it, by stochastic rasterisation (msaa); by a \
+               compute shader, the entries of a compact geometry buffer that samples point to (indirect-gbuffer; Liktor \
+               and Dachsbacher 2012); or the texels of a texture of each draw, which is then drawn with that texture \
+               (texture-space; Andersson et al. 2014; meshes need atlases)",
         ..Setting::changing(Changes::Picture)
     },
     Setting {

@@ -243,6 +243,7 @@ fn settings_that_a_baseline_does_not_read_are_refused() {
         (&[SSAA, ("guard-band", "0")], "--guard-band 0 with --shading ssaa"),
         (&[SSAA, ("pass-samples", "4")], "--pass-samples 4 with --shading ssaa"),
         (&[MSAA, ("visibility", "instancing")], "--visibility instancing with --shading msaa"),
+        (&[MSAA, ("visibility", "repeat-frame")], "--visibility repeat-frame with --shading msaa"),
         (&[SSAA, ("visibility", "ray")], "--visibility ray with --shading ssaa"),
         (&[SSAA, ("layer-from", "vertex")], "--layer-from vertex with --shading ssaa"),
         (&[MSAA, ("polygon-from", "vertex")], "--polygon-from vertex with --shading msaa"),

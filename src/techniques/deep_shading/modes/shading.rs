@@ -48,25 +48,24 @@ impl Shading {
     /// Errors: what is drawn sample by sample has no such kind (exit code 2).
     pub fn visibility(self, values: &Values, caps: &Caps) -> Result<Visibility> {
         let visibility = Visibility::of(values, caps);
-        let goes_with_all = matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic);
-        match self {
-            Self::Deep | Self::IndirectGbuffer => Ok(visibility),
-            Self::Msaa { .. } if goes_with_all => Ok(Visibility::Stochastic),
-            _ if goes_with_all => Ok(visibility),
-            Self::Msaa { .. } | Self::Ssaa | Self::TextureSpace(_) => {
-                let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
-                let (why, advice) = match self {
-                    Self::Msaa { .. } => ("a shader tests its samples", "--visibility stochastic does"),
-                    _ => (
-                        "samples are drawn and coloured layer by layer",
-                        "--visibility repeat-frame and stochastic do so",
-                    ),
-                };
-                Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}"))
-                    .within(NAME)
-                    .note(advice))
-            }
+        let (is_drawn, why, advice) = match self {
+            Self::Deep | Self::IndirectGbuffer => return Ok(visibility),
+            Self::Msaa { .. } => (
+                visibility == Visibility::Stochastic,
+                "a shader tests a pixel's samples, all at once",
+                "--visibility stochastic does so",
+            ),
+            Self::Ssaa | Self::TextureSpace(_) => (
+                matches!(visibility, Visibility::RepeatFrame | Visibility::Stochastic),
+                "samples are drawn and coloured layer by layer",
+                "--visibility repeat-frame and stochastic do so",
+            ),
+        };
+        if is_drawn {
+            return Ok(visibility);
         }
+        let [shading, kind] = ["shading", "visibility"].map(|key| values.text(key));
+        Err(Error::request(format!("--visibility {kind} with --shading {shading}: {why}")).within(NAME).note(advice))
     }
 
     /// The logarithm to 2 of a texture's side; 0: there are none.
