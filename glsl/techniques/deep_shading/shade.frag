@@ -10,9 +10,6 @@
 #include "techniques/deep_shading/scene_buffers.glsl"
 #include "techniques/deep_shading/surface.glsl"
 #include "techniques/deep_shading/counters.glsl"
-#ifndef BARYCENTRICS_COMPUTED
-#include "techniques/deep_shading/drawn_place.glsl"
-#endif
 
 // As in insert.comp.
 layout(constant_id = 92) const uint TOLERATES_DUPLICATES = 0;
@@ -27,6 +24,9 @@ layout(location = 0) flat in uint in_primitive;
 layout(location = 1) in vec3 in_weights;
 #elif defined(BARYCENTRICS_DEVICE)
 #define in_weights gl_BaryCoordEXT
+#endif
+#ifndef BARYCENTRICS_COMPUTED
+#include "techniques/deep_shading/drawn_place.glsl"
 #endif
 
 layout(std430, set = 0, binding = 20) readonly buffer Begins { uint begins[]; };
@@ -47,7 +47,7 @@ layout(std430, set = 0, binding = 26) buffer Counters { uint counters[]; };
 
 void main() {
 #ifndef BARYCENTRICS_COMPUTED
-    Place drawn = drawn_place(in_weights);
+    Place drawn = drawn_place();
 #endif
     uvec2 at = uvec2(gl_FragCoord.xy);
     // A quad at the rim has pixels beyond it, which are run too: what they would read may be no pointer. Nothing is

@@ -20,10 +20,11 @@ layout(std430, set = 0, binding = 4) readonly buffer Tuples { TupleBlock tuples[
 
 #include "techniques/deep_shading/visibility/hit.glsl"
 #else
-#include "techniques/deep_shading/drawn_place.glsl"
-
 layout(location = 1) flat in uint in_primitive;
 layout(location = 2) in vec3 in_weights;
+
+#include "techniques/deep_shading/drawn_place.glsl"
+
 #ifdef ALPHA_OPAQUE
 // What writes into buffers, as counting does, is else tested after it has run.
 layout(early_fragment_tests) in;
@@ -48,7 +49,7 @@ bool is_placed(out Place place) {
     place = hit_place(tuple, gl_FragCoord.xy, weights);
     gl_FragDepth = depth;
 #else
-    place = drawn_place(in_weights);
+    place = drawn_place();
     place.weights = inside_weights(place.weights);
 #endif
     // A layer's pixels are a table apart.
