@@ -285,9 +285,14 @@ fn figure_7(effort: Effort) -> Recipe {
     for side_px in [16, 8, 4, 2] {
         let scene = format!("panel:parts={:.0}", panel::SIDE_M / (px_m * f64::from(side_px)));
         for blur_px in [0, 4, 16, 64] {
+            let blur_m = f64::from(blur_px) * px_m;
+            // What a small picture does not hold would be lost.
+            if blur_m > panel::most_blur_m() {
+                continue;
+            }
             let step = format!("panel-{side_px}-{blur_px}");
             // A panel twice as far as what is in focus is blurred as wide as the lens is.
-            let lens = format!("--focus 1 --aperture {:.6}", f64::from(blur_px) * px_m);
+            let lens = format!("--focus 1 --aperture {blur_m:.6}");
             let words = format!("{} {} {UNLIT}", pictures(effort), if blur_px == 0 { "" } else { &lens });
             recipe.step(Step::render(&step, "png", &scene, &words));
             let column = if blur_px == 0 { "sharp".to_owned() } else { format!("{blur_px} pixels") };

@@ -33,6 +33,12 @@ pub fn picture_height_m() -> f64 {
     2.0 * EYE_M * (0.5 * f64::from(Y_FOV)).tan()
 }
 
+/// How wide blur may be that is within the picture, metres.
+pub fn most_blur_m() -> f64 {
+    let (sine, cosine) = sin_cos_turns(TURNS);
+    picture_height_m() - SIDE_M * (cosine + sine)
+}
+
 /// The panel; the seed changes nothing.
 pub fn make(values: &Values, _seed: u64) -> Assembly {
     let mut assembly = Assembly::default();
