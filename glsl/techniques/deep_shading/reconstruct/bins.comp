@@ -39,6 +39,7 @@ void main() {
     atomicMax(farthest, own_farthest);
     barrier();
     vec2 scale = depth_scale();
+    Parts parts = parts_of(deep.sample_count);
     for (uint at = own; at < pixel_count; at += gl_WorkGroupSize.x) {
         uvec2 pixel = begin + uvec2(at % size.x, at / size.x);
         // Most samples of a pixel follow others into the same bin, and are summed up first.
@@ -55,7 +56,7 @@ void main() {
                 last = bin;
                 sum = no_bin();
             }
-            vec3 support = support_of(blur);
+            vec3 support = support_of(blur, parts);
             sum.count++;
             sum.circle += summed(blur.circle_px);
             sum.motion[0] += summed(blur.motion_px.x);

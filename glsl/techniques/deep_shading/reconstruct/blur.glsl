@@ -3,15 +3,20 @@
 #ifndef DEEP_SHADING_RECONSTRUCT_BLUR_GLSL
 #define DEEP_SHADING_RECONSTRUCT_BLUR_GLSL
 
-// The filter's standard deviation over that of a circle of confusion. Larger takes more noise away and more of the picture: at
-// 0.25 and 0.35 hall at 320x180 with an aperture of 0.6 m has an RMSE of 0.250 and 0.241 and an HDR-FLIP of 0.126 and 0.124,
-// power with one of 0.1 m 0.0182 and 0.0178, and 0.122 and 0.124.
+// The filter's standard deviation over that of a circle of confusion, with PART_SAMPLES samples a pixel. Larger takes more noise
+// away and more of the picture.
 const float LENS_PART = 0.35;
-// And over that of a way, along which a thing thins out towards both ends; a wide filter brightens these: at 0.12, 0.2 and 0.35 a
-// box that moves has an HDR-FLIP of 0.0142, 0.0141 and 0.0189.
-const float WAY_PART = 0.2;
-// A blur of this radius, or along a way as long as its double, stays within a pixel, whose own samples have it already.
+// And over that of a way, along which a thing thins out towards both ends; a wide filter brightens these: at 0.15 and 0.2 the
+// truck of glTF's samples has an HDR-FLIP of 0.0244 and 0.0249, unfiltered 0.0242.
+const float WAY_PART = 0.15;
+// More samples have less noise, and narrower filters for it, which begin at wider blur: of 32, those of 8 raise the HDR-FLIP of VC
+// from 0.0499 to 0.0506 and narrower ones lower it to 0.0498.
+const float PART_SAMPLES = 8.0;
+// A blur of this radius, with PART_SAMPLES samples, stays within a pixel, whose own samples have it already.
 const float SHARP_PX = 0.5;
+// A way up to this length is left to a pixel's own samples, too: at 1, 1.5 and 2 a box that moves has an HDR-FLIP of 0.0125, 0.0120 and
+// 0.0117, unfiltered 0.0117.
+const float SHARP_WAY_PX = 2.0;
 // Greatest radius: filters look no farther than from tile to tile.
 const float MOST_RADIUS_PX = 15.9;
 // Pixels of a tile's side.
@@ -72,18 +77,31 @@ Blur blur_of(uvec2 colors, uvec2 vectors) {
     return Blur(unpackHalf2x16(colors.y).y, unpackHalf2x16(vectors.x), uintBitsToFloat(vectors.y));
 }
 
+// How wide filters are for what is blurred.
+struct Parts {
+    float lens;
+    float way;
+    // Radius of the circles of confusion that are not filtered.
+    float sharp_px;
+};
+
+Parts parts_of(uint sample_count) {
+    float few = min(sqrt(PART_SAMPLES / float(sample_count)), 1.0);
+    return Parts(LENS_PART * sqrt(few), WAY_PART * few, SHARP_PX / few);
+}
+
 // The ellipse that a filter ends at, as a symmetric matrix (xx, xy, yy): d is inside where its square by the inverse is below 1.
 // The unit circle: no other pixel's middle is inside.
 //
 // The blur's variance is a quarter of its radius squared on each axis, and along its way a twelfth of its length squared; the
 // filter's an eighth of its radius squared.
-vec3 support_of(Blur blur) {
-    float circle = max(abs(blur.circle_px) - SHARP_PX, 0.0);
+vec3 support_of(Blur blur, Parts parts) {
+    float circle = max(abs(blur.circle_px) - parts.sharp_px, 0.0);
     float way = length(blur.motion_px);
-    vec2 moved = way > 2.0 * SHARP_PX ? blur.motion_px * ((way - 2.0 * SHARP_PX) / way) : vec2(0.0);
+    vec2 moved = way > SHARP_WAY_PX ? blur.motion_px * ((way - SHARP_WAY_PX) / way) : vec2(0.0);
     float round_part = 2.0 * circle * circle;
-    vec3 wide = LENS_PART * LENS_PART * vec3(round_part, 0.0, round_part) +
-                WAY_PART * WAY_PART * 2.0 / 3.0 * vec3(moved.x * moved.x, moved.x * moved.y, moved.y * moved.y);
+    vec3 wide = parts.lens * parts.lens * vec3(round_part, 0.0, round_part) +
+                parts.way * parts.way * 2.0 / 3.0 * vec3(moved.x * moved.x, moved.x * moved.y, moved.y * moved.y);
     float most = MOST_RADIUS_PX * MOST_RADIUS_PX - 1.0;
     // The longer axis, squared.
     float longest = 0.5 * (wide.x + wide.z) + length(vec2(0.5 * (wide.x - wide.z), wide.y));

@@ -26,6 +26,7 @@ void main() {
         return;
     }
     TileBlock tile = tiles[tile_under(frame_px, pixel)];
+    Parts parts = parts_of(deep.sample_count);
     LayerMean sums[LAYER_COUNT];
     for (uint layer = 0u; layer < LAYER_COUNT; layer++) {
         sums[layer] = no_mean();
@@ -37,7 +38,7 @@ void main() {
         uint layer = layer_of(tile, blur.depth);
         sums[layer].count++;
         sums[layer].radiance += blur.depth < NO_DEPTH ? radiance_of(colors) : frame.background.rgb;
-        sums[layer].support += support_of(blur);
+        sums[layer].support += support_of(blur, parts);
         sums[layer].depth = min(sums[layer].depth, blur.depth);
     }
     for (uint layer = 0u; layer < LAYER_COUNT; layer++) {

@@ -16,8 +16,8 @@
 //!   of it, so that nothing is drawn beyond the blur
 //!
 //! Colours and parts are ratios of sums with the same weights: one colour stays one colour, and nothing gets darker. A pixel
-//! whose layers are sharp has the bits of the resolve. Filters end after 16 pixels: blur with a radius over 32 pixels, or a way
-//! of over 56, keeps noise.
+//! whose layers are sharp has the bits of the resolve. More samples a pixel have narrower filters. They end after 16 pixels: of 8
+//! samples, blur with a radius over 32 pixels, or a way of over 131, keeps noise.
 
 pub(super) mod bins;
 pub(super) mod filter;
