@@ -1,5 +1,5 @@
 // How far the lens and motion have spread what a sample sees, and how far its colour may be spread in turn: the filter of
-// a surface is a fixed part as wide as its blur, whose picture has no detail finer than that (reconstruct/mod.rs).
+// a surface is a part as wide as its blur, whose picture has no detail finer than that (reconstruct/mod.rs).
 #ifndef DEEP_SHADING_RECONSTRUCT_BLUR_GLSL
 #define DEEP_SHADING_RECONSTRUCT_BLUR_GLSL
 
